@@ -6,8 +6,6 @@ namespace passung::scene {
 
 namespace {
 
-constexpr bool kSurfaceDefault = false;  // of auto, where a mesh takes part
-
 /// Its faces and edges bound a solid (closed_form::solidOf); a sheet has no inside.
 bool hasClosedForm(const PartSpec& part) {
     const auto* shape = std::get_if<shape::Shape>(&part.geometry);
@@ -35,8 +33,6 @@ const char* surfaceProblem(const PartSpec& held, const PartSpec& obstacle, const
     return nullptr;
 }
 
-bool isMesh(const PartSpec& part) { return std::holds_alternative<MeshFile>(part.geometry); }
-
 const PartSpec* heldPart(const SceneSpec& scene) {
     const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const auto& part) { return part.held; });
     return held == scene.parts.end() ? nullptr : &*held;
@@ -46,11 +42,10 @@ const PartSpec* heldPart(const SceneSpec& scene) {
 
 GeometryChoice geometryOfPair(const PartSpec& held, const PartSpec& obstacle, const ContactSpec& contact) {
     if (contact.geometry != Geometry::Auto) return {contact.geometry, "contact.geometry names it"};
-    const char* problem = closedFormProblem(held, obstacle, contact);
-    if (problem == nullptr) return {Geometry::ClosedForm, "a god object, and parts that are parametric shapes"};
-    if (kSurfaceDefault && (isMesh(held) || isMesh(obstacle)) && surfaceProblem(held, obstacle, contact) == nullptr)
-        return {Geometry::Surface, "a part is a mesh"};
-    return {Geometry::Field, problem};
+    if (closedFormProblem(held, obstacle, contact) == nullptr)
+        return {Geometry::ClosedForm, "a god object, and parts that are parametric shapes"};
+    if (const char* problem = surfaceProblem(held, obstacle, contact)) return {Geometry::Field, problem};
+    return {Geometry::Surface, "a god object, and a part that is a mesh or sheet"};
 }
 
 GeometryChoice geometryOf(const SceneSpec& scene) {
