@@ -74,13 +74,42 @@ DeviceReading readingAt(const Pose& X_WH) {
     return reading;
 }
 
-Shown show(const scene::Scene& scene, std::span<const Pose> path) {
+/// Tells whoever waits how far one setting is. Its work: what is shown, what is judged, what is timed.
+class SettingSteps {
+public:
+    SettingSteps(const StepReport& report, std::string what, std::size_t setting, std::size_t settings)
+        : report_(report), what_(std::move(what)), first_(setting), all_(settings) {}
+
+    void begin() const { tell(0.0); }
+    void shown(std::size_t tick, std::size_t ticks) const { every(tick, ticks, kBuilt, kShown); }
+    void judged(std::size_t tick, std::size_t ticks) const { tell(between(tick, ticks, kShown, kJudged)); }
+    void timed(std::size_t tick, std::size_t ticks) const { every(tick, ticks, kJudged, 1.0); }
+
+private:
+    static constexpr double kBuilt = 0.1, kShown = 0.25, kJudged = 0.5;  // of a setting, about
+    static constexpr std::size_t kTicks = 500;                           // seldom enough to cost no tick anything
+
+    static double between(std::size_t i, std::size_t n, double from, double to) {
+        return from + (to - from) * static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(n, 1));
+    }
+    void every(std::size_t i, std::size_t n, double from, double to) const {
+        if (i % kTicks == 0) tell(between(i, n, from, to));
+    }
+    void tell(double share) const { report_(what_, (static_cast<double>(first_) + share) / static_cast<double>(all_)); }
+
+    const StepReport& report_;
+    std::string what_;
+    std::size_t first_, all_;
+};
+
+Shown show(const scene::Scene& scene, std::span<const Pose> path, const SettingSteps& steps) {
     const scene::Scene spring = springOf(scene);
     const tick::SceneModels models(spring);
     tick::SceneSequence ticks(std::array{tick::SceneTurn{&models[0]}});
     const scene::ContactSpec& contact = spring.spec.contact;
     Shown shown;
     for (const Pose& pose : path) {
+        steps.shown(shown.X_WG.size(), path.size());
         const tick::TickOutput output = ticks.step(readingAt(pose));
         const tick::TickFrame& frame = output.frame;
         shown.X_WH.push_back(frame.X_WH);
@@ -94,13 +123,16 @@ Shown show(const scene::Scene& scene, std::span<const Pose> path) {
     return shown;
 }
 
-void timeTicks(const scene::Scene& scene, std::span<const Pose> path, int repetitions, PathCost& row) {
+void timeTicks(const scene::Scene& scene, std::span<const Pose> path, int repetitions, const SettingSteps& steps,
+               PathCost& row) {
     constexpr double kUnlimited = std::numeric_limits<double>::infinity();
     const tick::SceneModels models(scene);
     std::vector<double> time(path.size(), kUnlimited), wall(path.size(), kUnlimited);
     for (int run = 0; run < repetitions; ++run) {
         tick::SceneSequence ticks(std::array{tick::SceneTurn{&models[0]}});
         for (std::size_t i = 0; i < path.size(); ++i) {
+            steps.timed(static_cast<std::size_t>(run) * path.size() + i,
+                        static_cast<std::size_t>(repetitions) * path.size());
             const DeviceReading reading = readingAt(path[i]);
             const auto begin = std::chrono::steady_clock::now();
             const std::int64_t processor = threadProcessorNanoseconds();
@@ -149,10 +181,12 @@ std::vector<std::size_t> ticksToJudge(const Shown& shown, int every) {
     return {ticks.begin(), ticks.end()};
 }
 
-void judgeOverlap(const Shown& shown, const std::vector<std::size_t>& ticks, const SceneOverlap& truth, PathCost& row) {
+void judgeOverlap(const Shown& shown, const std::vector<std::size_t>& ticks, const SceneOverlap& truth,
+                  const SettingSteps& steps, PathCost& row) {
     row.judged = ticks.size();
-    for (const std::size_t i : ticks) {
-        const Overlap found = truth.at(shown.X_WG[i], kOverlap);
+    for (std::size_t k = 0; k < ticks.size(); ++k) {
+        steps.judged(k, ticks.size());
+        const Overlap found = truth.at(shown.X_WG[ticks[k]], kOverlap);
         row.overlap = std::fmax(row.overlap, found.depth);
         row.overlap_bound = std::fmax(row.overlap_bound, found.bound);
     }
@@ -293,23 +327,24 @@ Result<TickAccuracy> measureTicks(const scene::SceneSpec& scene, std::span<const
     scene::PartCache cache(store);
     OverlapBodies bodies(chordFor(scene));
     for (std::size_t i = 0; i < settings.size(); ++i) {
-        report(settingText(settings[i]), static_cast<double>(i) / static_cast<double>(settings.size()));
+        const SettingSteps steps(report, settingText(settings[i]), i, settings.size());
+        steps.begin();
         spec.contact = contactOf(scene.contact, settings[i]);
         const auto built = scene::buildScene(spec, cache);
         if (!built) return built.errors();
-        const Shown shown = show(*built, path);
+        const Shown shown = show(*built, path, steps);
         const auto ticks = ticksToJudge(shown, effort.every);
         PathCost row{.setting = settings[i], .ticks = path.size()};
         measureSize(*built, row);
         countSuspended(shown, row);
         judgeGrain(shown, spec.contact, row);
         const SceneOverlap truth(*built, bodies);
-        if (truth.hasObstacles()) judgeOverlap(shown, ticks, truth, row);
+        if (truth.hasObstacles()) judgeOverlap(shown, ticks, truth, steps, row);
         const std::string no_spring = noSpring(spec.contact);
         if (reference.missing().empty() && no_spring.empty()) judgeForce(shown, ticks, reference, row);
         if (!no_spring.empty() && std::find(result.notes.begin(), result.notes.end(), no_spring) == result.notes.end())
             result.notes.push_back(no_spring);
-        timeTicks(*built, path, effort.repetitions, row);
+        timeTicks(*built, path, effort.repetitions, steps, row);
         result.rows.push_back(row);
     }
     report("", 1.0);

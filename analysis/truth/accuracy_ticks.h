@@ -83,8 +83,8 @@ struct TickAccuracy {
 ///   grain     |ΔF| - K |ΔX_H|, at least 0, |ΔX_H| in the coupling's metric: where the free space is convex around the
 ///             pose no spring to its nearest pose changes faster, since that projection does not expand.
 ///   time      of the scene as it is, effects and limits included.
-/// All but times are the same for the same input. Registration and start gate are left out, as in `simulate`. Errors:
-/// buildScene's. @pre a path, settings of tickSettings.
+/// All but times are the same for the same input. `report` may throw to give up. Registration and start gate are left
+/// out, as in `simulate`. Errors: buildScene's. @pre a path, settings of tickSettings.
 Result<TickAccuracy> measureTicks(const scene::SceneSpec& scene, std::span<const Pose> path,
                                   const std::vector<TickSetting>& settings, const TickEffort& effort,
                                   const StepReport& report, scene::BuildStore* store = nullptr);
