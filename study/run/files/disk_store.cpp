@@ -7,20 +7,13 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "study/run/files/synced_write.h"
+
 namespace passung::run {
 
 namespace {
 
 constexpr std::uintmax_t kLargest = std::uintmax_t{4} << 30;  // [bytes]; what no field of ours reaches is not read
-
-bool writeAll(int file, std::string_view bytes) {
-    while (!bytes.empty()) {
-        const ssize_t written = write(file, bytes.data(), bytes.size());
-        if (written <= 0) return false;
-        bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return fsync(file) == 0;
-}
 
 }  // namespace
 
@@ -43,18 +36,14 @@ void DiskStore::keep(const std::string& name, std::string_view bytes) {
     std::string temporary = (folder_ / (name + ".XXXXXX")).string();
     const int file = mkostemp(temporary.data(), O_CLOEXEC);
     if (file < 0) return;
-    bool whole = writeAll(file, bytes);
+    bool whole = writeSynced(file, bytes);
     whole = close(file) == 0 && whole;
     if (whole) std::filesystem::rename(temporary, folder_ / name, failure);
     if (!whole || failure) {
         std::filesystem::remove(temporary, failure);
         return;
     }
-    // The name itself reaches the disk with its folder.
-    const int folder = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (folder < 0) return;
-    fsync(folder);
-    close(folder);
+    syncFolder(folder_);
 }
 
 std::unique_ptr<DiskStore> openDiskStore() {

@@ -68,6 +68,17 @@ inline std::string fairStudy() {
     return text.replace(text.find(hopeless), hopeless.size(), "\"task.timeout_s\" = 20");
 }
 
+/// The same with the method that is the default in both conditions, which differ by a second of their time-outs.
+inline std::string oneMethodStudy(const std::string& name = "small") {
+    std::string text = smallStudy(name);
+    const auto replace = [&](const std::string& what, const std::string& by) {
+        text.replace(text.find(what), what.size(), by);
+    };
+    replace(R"("task.timeout_s" = 0.4, "contact.method" = "penalty")", R"("task.timeout_s" = 19)");
+    replace(R"(, "contact.method" = "god_object_heuristic")", "");
+    return text;
+}
+
 /// `text` of a scene or study with contact of fields, whatever its parts have. Throws if it has no table of contact.
 inline std::string onFields(std::string text) {
     const std::string table = "contact]\n";
