@@ -2,7 +2,7 @@ import QtQuick
 import QtQuick.Layouts
 import "../controls"
 
-// What accuracy costs in time: a dot per measured setting, the ones picked marked.
+// What accuracy = "auto" measured: a dot per setting, the ones picked marked.
 Item {
     id: view
     readonly property var facts: details.accuracy
@@ -13,20 +13,6 @@ Item {
         return exponent >= 0 ? Math.pow(10, exponent).toString() : Math.pow(10, exponent).toFixed(-exponent);
     }
 
-    Column {
-        anchors.centerIn: parent
-        visible: !view.there
-        width: Math.min(parent.width, 620)
-        Say {
-            objectName: "accuracyHint"
-            width: parent.width
-            quiet: true
-            wrapMode: Text.WordWrap
-            horizontalAlignment: Text.AlignHCenter
-            lineHeight: 1.25
-            text: view.facts.hint !== undefined ? view.facts.hint : ""
-        }
-    }
     ColumnLayout {
         anchors.fill: parent
         visible: view.there
@@ -55,7 +41,7 @@ Item {
         }
         Item {
             id: plot
-            objectName: "accuracyPlot"
+            objectName: "pickPlot"
             Layout.fillWidth: true
             Layout.fillHeight: true
             readonly property real inset: 64

@@ -30,9 +30,10 @@ RowLayout {
             model: page.cards
             currentIndex: page.chosen
             activeFocusOnTab: true
-            keyNavigationEnabled: true
-            onCurrentIndexChanged: if (currentIndex >= 0)
-                studies.chosen = currentIndex
+            keyNavigationEnabled: false // a list that is filled anew, as in another language, would choose its first line
+            onCurrentIndexChanged: positionViewAtIndex(page.chosen, ListView.Contain)
+            Keys.onUpPressed: studies.chosen = page.chosen - 1
+            Keys.onDownPressed: studies.chosen = page.chosen + 1
             delegate: Rectangle {
                 id: cardItem
                 required property var modelData
@@ -79,7 +80,6 @@ RowLayout {
                     anchors.fill: parent
                     onClicked: {
                         studies.chosen = cardItem.index;
-                        list.currentIndex = cardItem.index;
                         list.forceActiveFocus();
                     }
                 }
@@ -163,8 +163,9 @@ RowLayout {
                     visible: page.part === 4
                 }
             }
-            RowLayout {
+            RowLayout { // accuracy has a command of its own, and needs the room
                 spacing: 12
+                visible: page.part !== 3
                 ActionButton {
                     objectName: "tryOut"
                     kind: "main"
@@ -189,6 +190,7 @@ RowLayout {
             }
             ColumnLayout { // below the buttons, where words have the whole width
                 spacing: 6
+                visible: page.part !== 3
                 Say {
                     objectName: "leftOut"
                     Layout.fillWidth: true

@@ -42,6 +42,7 @@ App::App(const AppOptions& options)
       participants_(desk_, studies_),
       records_(desk_, studies_, replay_),
       details_(desk_, studies_),
+      accuracy_(desk_, studies_, options.accuracy),
       run_(desk_),
       form_(desk_, speech_),
       guide_(desk_, speech_),
@@ -65,6 +66,7 @@ App::App(const AppOptions& options)
     context.setContextProperty("records", &records_);
     context.setContextProperty("replay", &replay_);
     context.setContextProperty("details", &details_);
+    context.setContextProperty("accuracy", &accuracy_);
     context.setContextProperty("run", &run_);
     context.setContextProperty("form", &form_);
     context.setContextProperty("guide", &guide_);
@@ -168,6 +170,7 @@ void App::setLanguage(const QString& language) {
     participants_.retranslate();
     records_.retranslate();
     details_.retranslate();
+    accuracy_.retranslate();
     run_.retranslate();
     screen_.retranslate();
     if (!desk_.run().view().isRunning()) speech_.speak(language_.toStdString());

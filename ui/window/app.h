@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "ui/window/accuracy_model.h"
 #include "ui/window/cut_off.h"
 #include "ui/window/data_model.h"
 #include "ui/window/desk.h"
@@ -28,11 +29,12 @@
 namespace passung::window {
 
 struct AppOptions {
-    std::string protocols;    // folder of the studies
-    std::string data;         // folder for the databases of try-outs, and for what the windows remember
-    QString language;         // "de", "en"
-    bool dark = true;         // the experimenter's window; the participant's looks as its study says
-    double text_scale = 1.0;  // likewise
+    std::string protocols;            // folder of the studies
+    std::string data;                 // folder for the databases of try-outs, and for what the windows remember
+    QString language;                 // "de", "en"
+    bool dark = true;                 // the experimenter's window; the participant's looks as its study says
+    double text_scale = 1.0;          // likewise
+    truth::TickEffort accuracy = {};  // of measuring what it costs
     std::optional<presenter::PictureQuality> quality = {};  // the participant's window draws so; none: as it is found
 };
 
@@ -58,6 +60,7 @@ public:
     DataModel& records() { return records_; }
     ReplayModel& replay() { return replay_; }
     StudyModel& details() { return details_; }
+    AccuracyModel& accuracy() { return accuracy_; }
     Look& look() { return look_; }
     Screen& screen() { return screen_; }
     FormModel& form() { return form_; }
@@ -84,6 +87,7 @@ private:
     ReplayModel replay_;
     DataModel records_;
     StudyModel details_;
+    AccuracyModel accuracy_;
     RunModel run_;
     Speech speech_;
     FormModel form_;

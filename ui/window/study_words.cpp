@@ -140,11 +140,11 @@ QString accuracyHint(bool asked_for) {
         return said(QT_TRANSLATE_NOOP("study",
                                       "This study picks its accuracy by itself when its first session begins: "
                                       "every setting is then measured on this machine and kept here."));
-    return said(
-        QT_TRANSLATE_NOOP("study",
-                          "Nothing was measured. With contact.accuracy = \"auto\" and contact.accuracy_budget_us "
-                          "in the protocol the first session measures every setting and picks the finest that "
-                          "fits; the command “passung accuracy” draws the same picture for any two parts."));
+    return said(QT_TRANSLATE_NOOP(
+        "study",
+        "Nothing was measured yet. Measuring lets a simulated hand do a trial of the condition, runs the tick along "
+        "its way with every method and geometry that the parts can have, and shows what each costs and how true it "
+        "is. It takes minutes; the window can be used meanwhile."));
 }
 
 QString pickLine(const presenter::AccuracyPoint& point, double budget_us) {

@@ -43,8 +43,12 @@ protected:
 
     void open(const char* language, bool dark) {
         app_.reset();
-        app_ = std::make_unique<window::App>(window::AppOptions{
-            .protocols = protocols_, .data = data_, .language = language, .dark = dark, .quality = quality_});
+        app_ = std::make_unique<window::App>(window::AppOptions{.protocols = protocols_,
+                                                                .data = data_,
+                                                                .language = language,
+                                                                .dark = dark,
+                                                                .accuracy = {.repetitions = 1, .every = 100},
+                                                                .quality = quality_});
         waitFor([&] { return app_->experimenter()->isExposed(); });
     }
 

@@ -2,29 +2,54 @@
 <!DOCTYPE TS>
 <TS version="2.1" language="de_DE">
 <context>
-    <name>TraceView</name>
-    <message>
-        <source>now</source>
-        <translation>jetzt</translation>
-    </message>
-</context>
-<context>
     <name>AccuracyView</name>
     <message>
-        <source>Error over time of every measured setting</source>
-        <translation>Fehler über der Zeit jeder gemessenen Einstellung</translation>
+        <source>Condition that is measured</source>
+        <translation>Bedingung, die gemessen wird</translation>
     </message>
     <message>
-        <source>time of a query, 99 % below [µs]</source>
-        <translation>Zeit einer Abfrage, 99 % darunter [µs]</translation>
+        <source>Error that is shown</source>
+        <translation>Gezeigter Fehler</translation>
     </message>
     <message>
-        <source>error of the depth, 99 % below [µm]</source>
-        <translation>Fehler der Tiefe, 99 % darunter [µm]</translation>
+        <source>Overlap</source>
+        <translation>Überlappung</translation>
     </message>
     <message>
-        <source>Large dots: none is both faster and more exact. Ring: picked for this study. Stroke: the budget.</source>
-        <translation>Große Punkte: Keine Einstellung ist zugleich schneller und genauer. Ring: für diese Studie gewählt. Strich: das Budget.</translation>
+        <source>Force</source>
+        <translation>Kraft</translation>
+    </message>
+    <message>
+        <source>Cancelling …</source>
+        <translation>Wird abgebrochen …</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>Measure again</source>
+        <translation>Neu messen</translation>
+    </message>
+    <message>
+        <source>Measure</source>
+        <translation>Messen</translation>
+    </message>
+    <message>
+        <source>%1 % · %2</source>
+        <translation>%1 % · %2</translation>
+    </message>
+    <message>
+        <source>%1 % · another study is measured</source>
+        <translation>%1 % · eine andere Studie wird gemessen</translation>
+    </message>
+    <message>
+        <source>Choose a setting in the picture or the table, or with the arrow keys, to write it into the study.</source>
+        <translation>Wählen Sie im Bild, in der Tabelle oder mit den Pfeiltasten eine Einstellung, um sie in die Studie zu schreiben.</translation>
+    </message>
+    <message>
+        <source>Use</source>
+        <translation>Übernehmen</translation>
     </message>
 </context>
 <context>
@@ -262,6 +287,48 @@
     </message>
 </context>
 <context>
+    <name>FrontPlot</name>
+    <message>
+        <source>%1 over the processor time of a tick, of every measured setting</source>
+        <translation>%1 über der Prozessorzeit eines Takts, von jeder gemessenen Einstellung</translation>
+    </message>
+    <message>
+        <source>processor time of a tick, 99.9 % below [µs]</source>
+        <translation>Prozessorzeit eines Takts, 99,9 % darunter [µs]</translation>
+    </message>
+</context>
+<context>
+    <name>FrontView</name>
+    <message>
+        <source>true overlap [µm]</source>
+        <translation>wahre Überlappung [µm]</translation>
+    </message>
+    <message>
+        <source>error of the force [%]</source>
+        <translation>Fehler der Kraft [%]</translation>
+    </message>
+    <message>
+        <source>Line: no setting is both faster and nearer the truth. Ring: the study&apos;s own. Bars: from the median; of the overlap from what was found to what is proven.</source>
+        <translation>Linie: Keine Einstellung ist zugleich schneller und näher an der Wahrheit. Ring: die der Studie. Balken: vom Median an; bei der Überlappung vom Gefundenen bis zum Bewiesenen.</translation>
+    </message>
+    <message>
+        <source>SETTING</source>
+        <translation>EINSTELLUNG</translation>
+    </message>
+    <message>
+        <source>Measured settings, the fastest first</source>
+        <translation>Gemessene Einstellungen, die schnellste zuerst</translation>
+    </message>
+    <message>
+        <source>%1: %2 µs, %3</source>
+        <translation>%1: %2 µs, %3</translation>
+    </message>
+    <message>
+        <source>in the study</source>
+        <translation>in der Studie</translation>
+    </message>
+</context>
+<context>
     <name>LeavingView</name>
     <message>
         <source>In the backup as well</source>
@@ -375,6 +442,53 @@
     </message>
 </context>
 <context>
+    <name>ParticipantList</name>
+    <message>
+        <source>Code</source>
+        <translation>Code</translation>
+    </message>
+    <message>
+        <source>Kind</source>
+        <translation>Art</translation>
+    </message>
+    <message>
+        <source>Sessions</source>
+        <translation>Sitzungen</translation>
+    </message>
+    <message>
+        <source>Consent</source>
+        <translation>Einwilligung</translation>
+    </message>
+    <message>
+        <source>Place</source>
+        <translation>Platz</translation>
+    </message>
+    <message>
+        <source>State</source>
+        <translation>Stand</translation>
+    </message>
+    <message>
+        <source>Participants</source>
+        <translation>Versuchspersonen</translation>
+    </message>
+    <message>
+        <source>%1 of %2 sessions</source>
+        <translation>%1 von %2 Sitzungen</translation>
+    </message>
+    <message>
+        <source>%1 of %2</source>
+        <translation>%1 von %2</translation>
+    </message>
+    <message>
+        <source>%1 broken off</source>
+        <translation>%1 abgebrochen</translation>
+    </message>
+    <message>
+        <source>Nobody is enrolled yet.</source>
+        <translation>Noch ist niemand aufgenommen.</translation>
+    </message>
+</context>
+<context>
     <name>ParticipantsPage</name>
     <message>
         <source>Experimenter</source>
@@ -485,6 +599,25 @@
     </message>
 </context>
 <context>
+    <name>PickView</name>
+    <message>
+        <source>Error over time of every measured setting</source>
+        <translation>Fehler über der Zeit jeder gemessenen Einstellung</translation>
+    </message>
+    <message>
+        <source>time of a query, 99 % below [µs]</source>
+        <translation>Zeit einer Abfrage, 99 % darunter [µs]</translation>
+    </message>
+    <message>
+        <source>error of the depth, 99 % below [µm]</source>
+        <translation>Fehler der Tiefe, 99 % darunter [µm]</translation>
+    </message>
+    <message>
+        <source>Large dots: none is both faster and more exact. Ring: picked for this study. Stroke: the budget.</source>
+        <translation>Große Punkte: Keine Einstellung ist zugleich schneller und genauer. Ring: für diese Studie gewählt. Strich: das Budget.</translation>
+    </message>
+</context>
+<context>
     <name>PlacesView</name>
     <message>
         <source>Place %1: %2</source>
@@ -548,53 +681,6 @@
     <message>
         <source>Close</source>
         <translation>Schließen</translation>
-    </message>
-</context>
-<context>
-    <name>ParticipantList</name>
-    <message>
-        <source>Code</source>
-        <translation>Code</translation>
-    </message>
-    <message>
-        <source>Kind</source>
-        <translation>Art</translation>
-    </message>
-    <message>
-        <source>Sessions</source>
-        <translation>Sitzungen</translation>
-    </message>
-    <message>
-        <source>Consent</source>
-        <translation>Einwilligung</translation>
-    </message>
-    <message>
-        <source>Place</source>
-        <translation>Platz</translation>
-    </message>
-    <message>
-        <source>State</source>
-        <translation>Stand</translation>
-    </message>
-    <message>
-        <source>Participants</source>
-        <translation>Versuchspersonen</translation>
-    </message>
-    <message>
-        <source>%1 of %2 sessions</source>
-        <translation>%1 von %2 Sitzungen</translation>
-    </message>
-    <message>
-        <source>%1 of %2</source>
-        <translation>%1 von %2</translation>
-    </message>
-    <message>
-        <source>%1 broken off</source>
-        <translation>%1 abgebrochen</translation>
-    </message>
-    <message>
-        <source>Nobody is enrolled yet.</source>
-        <translation>Noch ist niemand aufgenommen.</translation>
     </message>
 </context>
 <context>
@@ -976,6 +1062,13 @@
     </message>
 </context>
 <context>
+    <name>TraceView</name>
+    <message>
+        <source>now</source>
+        <translation>jetzt</translation>
+    </message>
+</context>
+<context>
     <name>TrialList</name>
     <message>
         <source>Trials</source>
@@ -1003,6 +1096,105 @@
     <message>
         <source>✕ unstable by the model</source>
         <translation>✕ instabil nach dem Modell</translation>
+    </message>
+</context>
+<context>
+    <name>accuracy</name>
+    <message>
+        <source>%1 µm</source>
+        <translation>%1 µm</translation>
+    </message>
+    <message>
+        <source>points %1 mm apart</source>
+        <translation>Punkte alle %1 mm</translation>
+    </message>
+    <message>
+        <source>both ways</source>
+        <translation>beidseitig</translation>
+    </message>
+    <message>
+        <source>%1 nodes</source>
+        <translation>%1 Knoten</translation>
+    </message>
+    <message>
+        <source>median %1 µs, 99.9 % of ticks below %2 µs, most %3 µs</source>
+        <translation>Median %1 µs, 99,9 % der Takte unter %2 µs, höchstens %3 µs</translation>
+    </message>
+    <message>
+        <source>true overlap at most %1 µm</source>
+        <translation>wahre Überlappung höchstens %1 µm</translation>
+    </message>
+    <message>
+        <source>force wrong by %1 % (99 % of ticks below)</source>
+        <translation>Kraft um %1 % falsch (99 % der Takte darunter)</translation>
+    </message>
+    <message>
+        <source>the hand&apos;s path</source>
+        <translation>der Weg der Hand</translation>
+    </message>
+    <message>
+        <source>Measured along a simulated hand&apos;s way in a trial, %1 s.</source>
+        <translation>Gemessen auf dem Weg einer simulierten Hand in einem Durchgang, %1 s.</translation>
+    </message>
+    <message>
+        <source>Measured while the held part is pressed 2 mm into the nearest obstacle and slides, %1 s.</source>
+        <translation>Gemessen, während das gehaltene Teil 2 mm in das nächste Hindernis gedrückt wird und gleitet, %1 s.</translation>
+    </message>
+    <message>
+        <source>The scene has no obstacle: nothing can overlap.</source>
+        <translation>Die Szene hat kein Hindernis: Nichts kann sich überlappen.</translation>
+    </message>
+    <message>
+        <source>No force to compare with: it is known for a ball among solids without hollows, and for a round peg in a bore.</source>
+        <translation>Keine Kraft zum Vergleichen: Bekannt ist sie für eine Kugel zwischen Körpern ohne Höhlungen und für einen runden Stift in einer Bohrung.</translation>
+    </message>
+    <message>
+        <source>Written into the study&apos;s file.</source>
+        <translation>In die Datei der Studie geschrieben.</translation>
+    </message>
+    <message>
+        <source>The study says so already: nothing was written.</source>
+        <translation>Die Studie sagt das schon: Nichts wurde geschrieben.</translation>
+    </message>
+    <message>
+        <source>Nothing was written: the file has changed since it was measured. Read it again and measure.</source>
+        <translation>Nichts wurde geschrieben: Die Datei hat sich seit der Messung geändert. Lesen Sie sie neu und messen Sie.</translation>
+    </message>
+    <message>
+        <source>Nothing was written: the study has begun, its database holds what it runs by.</source>
+        <translation>Nichts wurde geschrieben: Die Studie hat begonnen, ihre Datenbank hält fest, wonach sie läuft.</translation>
+    </message>
+    <message>
+        <source>Nothing was written: %1 is set at %2, by a factor, a block or a staircase.</source>
+        <translation>Nichts wurde geschrieben: %1 wird bei %2 gesetzt, von einem Faktor, einem Block oder einem Staircase-Verfahren.</translation>
+    </message>
+    <message>
+        <source>Nothing was written: %1</source>
+        <translation>Nichts wurde geschrieben: %1</translation>
+    </message>
+    <message>
+        <source>Choose a setting first.</source>
+        <translation>Wählen Sie zuerst eine Einstellung.</translation>
+    </message>
+    <message>
+        <source>Writing …</source>
+        <translation>Wird geschrieben …</translation>
+    </message>
+    <message>
+        <source>%1 mm</source>
+        <translation>%1 mm</translation>
+    </message>
+    <message>
+        <source>tolerance %1 µm</source>
+        <translation>Toleranz %1 µm</translation>
+    </message>
+    <message>
+        <source>cell %1 mm</source>
+        <translation>Zelle %1 mm</translation>
+    </message>
+    <message>
+        <source>cells of %1 mm</source>
+        <translation>Zellen von %1 mm</translation>
     </message>
 </context>
 <context>
@@ -2006,10 +2198,6 @@
         <translation>Diese Studie wählt ihre Genauigkeit selbst, wenn die erste Sitzung beginnt: Jede Einstellung wird dann auf diesem Rechner gemessen und hier aufbewahrt.</translation>
     </message>
     <message>
-        <source>Nothing was measured. With contact.accuracy = &quot;auto&quot; and contact.accuracy_budget_us in the protocol the first session measures every setting and picks the finest that fits; the command “passung accuracy” draws the same picture for any two parts.</source>
-        <translation>Nichts wurde gemessen. Mit contact.accuracy = &quot;auto&quot; und contact.accuracy_budget_us im Protokoll misst die erste Sitzung jede Einstellung und wählt die feinste, die passt; der Befehl „passung accuracy“ zeichnet dasselbe Bild für zwei beliebige Teile.</translation>
-    </message>
-    <message>
         <source>Budget %1 µs: %2, tolerance %3 µm, spacing %4 mm – %5 µs, error %6 µm</source>
         <translation>Budget %1 µs: %2, Toleranz %3 µm, Abstand %4 mm – %5 µs, Fehler %6 µm</translation>
     </message>
@@ -2040,6 +2228,10 @@
     <message>
         <source>Measuring …</source>
         <translation>Wird gemessen …</translation>
+    </message>
+    <message>
+        <source>Nothing was measured yet. Measuring lets a simulated hand do a trial of the condition, runs the tick along its way with every method and geometry that the parts can have, and shows what each costs and how true it is. It takes minutes; the window can be used meanwhile.</source>
+        <translation>Noch ist nichts gemessen. Die Messung lässt eine simulierte Hand einen Durchgang der Bedingung machen, rechnet den Takt auf ihrem Weg mit jeder Methode und Geometrie, die die Teile haben können, und zeigt, was jede kostet und wie wahr sie ist. Das dauert Minuten; das Fenster kann währenddessen benutzt werden.</translation>
     </message>
 </context>
 <context>
