@@ -106,7 +106,7 @@ void drawLegend(Svg& svg) {
         svg.text(x + 13, y + 4.5, word, kPlain);
         x += 40 + 7.5 * static_cast<double>(word.size());
     };
-    for (const auto method : kMethods) entry(PlotMark::Disc, colourOf(method), methodName(method));
+    for (const auto method : kMethods) entry(PlotMark::Disc, colourOf(method), scene::methodName(method));
     x += 22;
     for (const auto geometry : kGeometries) entry(markOf(geometry), "#FFFFFF", scene::geometryName(geometry));
     x = kLeft;

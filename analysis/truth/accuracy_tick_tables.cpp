@@ -30,7 +30,8 @@ auto ofFields(const Text& text) {
 void addSettings(Columns& columns) {
     columns.insert(
         columns.end(),
-        {{"method", "", "contact.method", [](const Row& r) { return std::string(methodName(r.setting.method)); }},
+        {{"method", "", "contact.method",
+          [](const Row& r) { return std::string(scene::methodName(r.setting.method)); }},
          {"geometry", "", "contact.geometry",
           [](const Row& r) { return std::string(scene::geometryName(r.setting.geometry)); }},
          {"tolerance_um", "um", "contact.tolerance_um, of fields; NA: has no meaning there",
@@ -124,24 +125,13 @@ Columns rowColumns() {
 
 }  // namespace
 
-const char* methodName(scene::ContactMethod method) {
-    switch (method) {
-        case scene::ContactMethod::Penalty:
-            return "penalty";
-        case scene::ContactMethod::GodObjectHeuristic:
-            return "god_object_heuristic";
-        case scene::ContactMethod::GodObject:
-            break;
-    }
-    return "god_object";
-}
-
 std::string tickCsv(const TickAccuracy& result) { return csv(rowColumns(), result.rows); }
 
 std::string tickCodebook() { return kCodebookHeader + codebookOf("accuracy.csv", rowColumns()); }
 
 std::string settingText(const TickSetting& setting) {
-    const std::string text = fmt::format("{}, {}", methodName(setting.method), scene::geometryName(setting.geometry));
+    const std::string text =
+        fmt::format("{}, {}", scene::methodName(setting.method), scene::geometryName(setting.geometry));
     if (setting.geometry != scene::Geometry::Field) return text;
     return fmt::format("{}, {}{}", text, settingText(setting.field), setting.two_way ? ", two ways" : "");
 }

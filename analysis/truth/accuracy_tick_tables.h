@@ -6,9 +6,6 @@
 
 namespace passung::truth {
 
-/// As [contact] names it.
-const char* methodName(scene::ContactMethod method);
-
 /// CSV: a header and one line per setting.
 std::string tickCsv(const TickAccuracy& result);
 

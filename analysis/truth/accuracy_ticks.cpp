@@ -298,7 +298,7 @@ TickSettings tickSettings(const scene::SceneSpec& scene, const TickSpace& space)
             asked.contact.method = method;
             asked.contact.geometry = geometry;
             if (const auto problem = scene::geometryProblem(asked))
-                all.left_out.push_back(fmt::format("{}: {}", methodName(method), *problem));
+                all.left_out.push_back(fmt::format("{}: {}", scene::methodName(method), *problem));
             else if (geometry == Geometry::Field)
                 addFieldSettings(scene.contact, space, method, all.settings);
             else

@@ -74,6 +74,18 @@ std::optional<std::string> geometryProblem(const SceneSpec& scene) {
     return std::nullopt;
 }
 
+const char* methodName(ContactMethod method) {
+    switch (method) {
+        case ContactMethod::Penalty:
+            return "penalty";
+        case ContactMethod::GodObjectHeuristic:
+            return "god_object_heuristic";
+        case ContactMethod::GodObject:
+            break;
+    }
+    return "god_object";
+}
+
 const char* geometryName(Geometry geometry) {
     switch (geometry) {
         case Geometry::Auto:

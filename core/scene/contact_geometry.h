@@ -25,6 +25,8 @@ GeometryChoice geometryOf(const SceneSpec& scene);
 /// What has to hold for the geometry that the scene names, as a requirement; nothing if it does.
 std::optional<std::string> geometryProblem(const SceneSpec& scene);
 
+/// "penalty", "god_object_heuristic", "god_object".
+const char* methodName(ContactMethod method);
 /// "auto", "closed_form", "surface", "field".
 const char* geometryName(Geometry geometry);
 /// Nothing for another text.

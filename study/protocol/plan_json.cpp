@@ -36,18 +36,6 @@ std::string partJson(const scene::PartSpec& part) {
     return json.json("pose", poseJson(part.X_WP)).json("shown_offset_m", jsonVector(part.shown_offset)).str();
 }
 
-const char* methodName(scene::ContactMethod method) {
-    switch (method) {
-        case scene::ContactMethod::Penalty:
-            return "penalty";
-        case scene::ContactMethod::GodObjectHeuristic:
-            return "god_object_heuristic";
-        case scene::ContactMethod::GodObject:
-            return "god_object";
-    }
-    return "";
-}
-
 const char* variantName(scene::PenaltyVariant variant) {
     switch (variant) {
         case scene::PenaltyVariant::MaxNormalised:
@@ -77,7 +65,7 @@ std::string contactJson(const plan::Condition& condition) {
     const bool automatic = condition.accuracy_budget > 0.0;
     const scene::Geometry geometry = scene::geometryOf(condition.scene).geometry;
     JsonObject json;
-    json.text("method", methodName(contact.method))
+    json.text("method", scene::methodName(contact.method))
         .text("geometry", scene::geometryName(geometry))
         .text("variant", variantName(contact.variant))
         .number("stiffness_N_per_m", contact.stiffness)

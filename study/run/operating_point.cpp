@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <vector>
 
-#include "analysis/truth/accuracy_tick_tables.h"
 #include "core/base/regular_file.h"
 #include "core/scene/contact_geometry.h"
 #include "study/protocol/contact_edit.h"
@@ -81,7 +80,7 @@ void addFieldKeys(const scene::ContactSpec& now, const TickFront& front, const t
 std::vector<ContactKey> keysOf(const plan::StudyPlan& plan, const plan::Condition& condition, const TickFront& front,
                                const truth::TickSetting& setting) {
     const scene::ContactSpec& now = condition.scene.contact;
-    std::vector<ContactKey> keys{{"method", quoted(truth::methodName(setting.method)), now.method == setting.method}};
+    std::vector<ContactKey> keys{{"method", quoted(scene::methodName(setting.method)), now.method == setting.method}};
     if (!staysAuto(plan, condition, setting))
         keys.push_back({"geometry", quoted(scene::geometryName(setting.geometry)), now.geometry == setting.geometry});
     if (condition.accuracy_budget > 0.0) {

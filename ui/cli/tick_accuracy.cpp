@@ -36,7 +36,7 @@ truth::TickSpace tickSpaceOf(const AccuracyArguments& options) {
     truth::TickSpace space;
     space.methods = named<ContactMethod>(
         std::array{ContactMethod::Penalty, ContactMethod::GodObjectHeuristic, ContactMethod::GodObject},
-        options.methods, truth::methodName);
+        options.methods, scene::methodName);
     space.geometries = named<Geometry>(std::array{Geometry::ClosedForm, Geometry::Surface, Geometry::Field},
                                        options.geometries, scene::geometryName);
     space.modes = named<field::FieldMode>(field::kFieldModes, options.modes, field::modeName);

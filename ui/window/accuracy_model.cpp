@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "analysis/truth/accuracy_tick_tables.h"
 #include "core/scene/contact_geometry.h"
 #include "study/run/files/builds.h"
 #include "study/run/files/protocol_files.h"
@@ -27,7 +26,7 @@ QVariantMap pointMap(const presenter::TickPlot& plot, const presenter::PlotPoint
     const truth::PathCost& row = front.measured.rows[point.row];
     const truth::TickSetting& setting = row.setting;
     const double cell = run::cellOf(front, setting);
-    return {{"method", QString::fromLatin1(truth::methodName(setting.method))},
+    return {{"method", QString::fromLatin1(scene::methodName(setting.method))},
             {"geometry", QString::fromLatin1(scene::geometryName(setting.geometry))},
             {"details", detailWords(setting, cell)},
             {"words", settingWords(setting, cell)},

@@ -6,7 +6,6 @@
 #include <QtCore/QStringList>
 #include <cmath>
 
-#include "analysis/truth/accuracy_tick_tables.h"
 #include "core/scene/contact_geometry.h"
 #include "ui/window/text.h"
 
@@ -47,7 +46,7 @@ QString detailWords(const truth::TickSetting& setting, double cell) {
 }
 
 QString settingWords(const truth::TickSetting& setting, double cell) {
-    QStringList words{QString::fromLatin1(truth::methodName(setting.method)),
+    QStringList words{QString::fromLatin1(scene::methodName(setting.method)),
                       QString::fromLatin1(scene::geometryName(setting.geometry))};
     if (setting.geometry != scene::Geometry::Field) return words.join(QStringLiteral(" · "));
     const QString resolution =

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "analysis/truth/accuracy_tick_tables.h"
+#include "core/scene/contact_geometry.h"
 #include "study/run/files/protocol_files.h"
 #include "study/run/files/replace_file.h"
 #include "study/run/run_study.h"
@@ -68,7 +68,7 @@ TEST_F(UseSetting, TheFileReadsAsEverySettingThatCanBeMeasured) {
         write(text_);
         const plan::StudyPlan plan = read();
         const OperatingPoint point = use(plan, settings[i]);
-        ASSERT_EQ(point.outcome, Outcome::Written) << truth::methodName(settings[i].method) << toString(point.problem);
+        ASSERT_EQ(point.outcome, Outcome::Written) << scene::methodName(settings[i].method) << toString(point.problem);
         const plan::StudyPlan after = read();
         for (const plan::Condition& condition : after.conditions) {
             const scene::ContactSpec& contact = condition.scene.contact;
