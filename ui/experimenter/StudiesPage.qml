@@ -30,10 +30,9 @@ RowLayout {
             model: page.cards
             currentIndex: page.chosen
             activeFocusOnTab: true
-            keyNavigationEnabled: false // a list that is filled anew, as in another language, would choose its first line
-            onCurrentIndexChanged: positionViewAtIndex(page.chosen, ListView.Contain)
-            Keys.onUpPressed: studies.chosen = page.chosen - 1
-            Keys.onDownPressed: studies.chosen = page.chosen + 1
+            keyNavigationEnabled: true
+            onCurrentIndexChanged: if (currentIndex >= 0)
+                studies.chosen = currentIndex
             delegate: Rectangle {
                 id: cardItem
                 required property var modelData
@@ -80,6 +79,7 @@ RowLayout {
                     anchors.fill: parent
                     onClicked: {
                         studies.chosen = cardItem.index;
+                        list.currentIndex = cardItem.index;
                         list.forceActiveFocus();
                     }
                 }
