@@ -5,7 +5,6 @@
 #include "core/scene/contact_geometry.h"
 #include "study/run/files/builds.h"
 #include "study/run/files/protocol_files.h"
-#include "ui/window/accuracy_words.h"
 #include "ui/window/study_words.h"
 #include "ui/window/text.h"
 
@@ -32,7 +31,6 @@ QVariantMap pointMap(const presenter::TickPlot& plot, const presenter::PlotPoint
             {"words", settingWords(setting, cell)},
             {"time", numberWord(point.time)},
             {"error", numberWord(point.error)},
-            {"megabytes", numberWord(1e-6 * row.bytes)},
             {"xLow", plot.time.shareOf(point.time_low)},
             {"x", plot.time.shareOf(point.time)},
             {"yLow", plot.error.shareOf(point.error_low)},
@@ -49,10 +47,18 @@ AccuracyModel::AccuracyModel(Desk& desk, Studies& studies, const truth::TickEffo
         emit changed();
         emit workChanged();
     });
+    connect(&desk_, &Desk::opened, this, &AccuracyModel::giveWay);
     connect(&desk_, &Desk::happened, this, [this] {
         emit changed();
         emit workChanged();  // what may be measured now
     });
+}
+
+/// A session has the machine for itself.
+void AccuracyModel::giveWay() {
+    if (running_.empty() || cancelled_) return;
+    told_[running_] = {.why = WhyNoFront::SessionBegan};
+    cancel();
 }
 
 AccuracyModel::~AccuracyModel() { cancelled_ = true; }
@@ -143,8 +149,8 @@ QVariantMap AccuracyModel::choice() const {
     }
     const auto told = told_.find(path());
     if (told == told_.end()) return map;
-    const auto& [point, problem] = told->second;
-    map["told"] = point ? outcomeWords(*point) : text(problem);
+    const auto& [point, why_none, problem] = told->second;
+    map["told"] = point ? outcomeWords(*point) : why_none ? noFrontWords(*why_none) : text(problem);
     map["good"] = point && (point->outcome == run::OperatingPoint::Outcome::Written ||
                             point->outcome == run::OperatingPoint::Outcome::SaidAlready);
     return map;
@@ -196,6 +202,7 @@ void AccuracyModel::measure() {
             const auto index = static_cast<std::size_t>(condition);
             if (index >= plan->conditions.size()) return Error{.message = "has no such condition", .file = file};
             const auto builds = run::openBuilds();
+            if (plan->conditions[index].timed_by != plan::TimedBy::Program) return Shared();
             double told = -1.0;
             const truth::TickSetting* last = nullptr;
             const auto watch = [&](const run::FrontProgress& progress) {
@@ -215,10 +222,12 @@ void AccuracyModel::measure() {
 
 void AccuracyModel::took(Result<Shared> measured, const std::string& path, int condition) {
     running_.clear();
-    if (measured)
+    if (measured && *measured == nullptr)
+        told_[path] = {.why = WhyNoFront::RealParts};
+    else if (measured)
         measured_[{path, condition}] = *std::move(measured);
     else if (!cancelled_)
-        told_[path] = {std::nullopt, toString(measured.errors().front())};
+        told_[path] = {.problem = toString(measured.errors().front())};
     emit workChanged();
     emit changed();
 }
@@ -242,7 +251,7 @@ void AccuracyModel::use() {
             using_ = false;
             if (point && point->plan) measured->plan = *point->plan;
             const bool written = point && point->outcome == run::OperatingPoint::Outcome::Written;
-            told_[file] = point ? Told{*std::move(point), {}} : Told{std::nullopt, toString(point.errors().front())};
+            told_[file] = point ? Told{.point = *std::move(point)} : Told{.problem = toString(point.errors().front())};
             if (written)
                 studies_.reload();  // tells of a change itself
             else

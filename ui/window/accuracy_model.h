@@ -9,6 +9,7 @@
 
 #include "study/run/operating_point.h"
 #include "ui/presenter/tick_plot.h"
+#include "ui/window/accuracy_words.h"
 #include "ui/window/desk.h"
 #include "ui/window/studies.h"
 #include "ui/window/worker.h"
@@ -63,14 +64,16 @@ private:
     };
     using Shared = std::shared_ptr<Measured>;  // shared: through the event loop
     struct Told {
-        std::optional<run::OperatingPoint> point;
-        std::string problem;
+        std::optional<run::OperatingPoint> point = {};  // what was written, or why nothing was
+        std::optional<WhyNoFront> why = {};             // nothing is measured
+        std::string problem = {};                       // else
     };
 
     std::string path() const;
     Measured* shown() const;
     presenter::TickPlot plot(const Measured& measured) const;
     bool tell(const std::string& path, const run::FrontProgress& progress);
+    void giveWay();
     void took(Result<Shared> measured, const std::string& path, int condition);
 
     Desk& desk_;

@@ -73,6 +73,11 @@ QString costWords(const truth::PathCost& row, double cell) {
     QStringList all{time};
     for (const QString& words : {overlap, force})
         if (!words.isEmpty()) all << words;
+    all << said(QT_TRANSLATE_NOOP("accuracy", "%1 MB")).arg(numberWord(1e-6 * row.bytes));
+    if (row.suspended > 0)
+        all << said(QT_TRANSLATE_NOOP("accuracy", "%1 of %2 ticks end in the next one"))
+                   .arg(row.suspended)
+                   .arg(row.ticks);
     return setting + QStringLiteral(": ") + all.join(QStringLiteral("; "));
 }
 
@@ -119,6 +124,13 @@ QString outcomeWords(const run::OperatingPoint& point) {
             break;
     }
     return said(QT_TRANSLATE_NOOP("accuracy", "Nothing was written: %1")).arg(text(toString(point.problem)));
+}
+
+QString noFrontWords(WhyNoFront why) {
+    return why == WhyNoFront::RealParts
+               ? said(QT_TRANSLATE_NOOP("accuracy",
+                                        "The trials of this condition are done with real parts: choose another one."))
+               : said(QT_TRANSLATE_NOOP("accuracy", "Measuring was given up, since a session began."));
 }
 
 QString whyNotUse(WhyNotUse why) {

@@ -25,6 +25,10 @@ QString pathWords(const run::TickFront& front);
 QString noErrorWords(presenter::TickError error);
 QString outcomeWords(const run::OperatingPoint& point);
 
+/// Why nothing is measured: the trials are done with real parts; a session began meanwhile.
+enum class WhyNoFront { RealParts, SessionBegan };
+QString noFrontWords(WhyNoFront why);
+
 enum class WhyNotUse { NothingChosen, Writes };
 QString whyNotUse(WhyNotUse why);
 

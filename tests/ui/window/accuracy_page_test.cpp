@@ -178,6 +178,28 @@ TEST_F(AccuracyPage, CancelledNothingIsShownAndAClosedWindowWaitsForNothing) {
     app_.reset();
 }
 
+TEST_F(AccuracyPage, RealPartsAreNotMeasuredAndASessionHasTheMachineForItself) {
+    // Truth: invariant: what is measured ends with the first news of a session, and says why.
+    std::string real = oneMethodStudy();
+    real.replace(real.find("\"task.timeout_s\" = 19"), 21,
+                 R"("task.timed_by" = "experimenter", "feedback.kinesthetic" = false)");
+    write("other", real);
+    app_->studies().reload();
+    ASSERT_TRUE(app_->studies().cards()[0].toMap()["sound"].toBool());
+    click("study-other");
+    click("measureAccuracy");
+    waitFor([&] { return !measuring(); });
+    EXPECT_EQ(textOf("accuracyTold"), "The trials of this condition are done with real parts: choose another one.");
+    app_->accuracy().setCondition(1);
+    click("measureAccuracy");
+    waitFor([&] { return app_->accuracy().work()["share"].toDouble() > 0.15; });
+    app_->studies().tryOut(1, true, "en");  // of the other study
+    waitFor([&] { return !measuring(); });
+    EXPECT_TRUE(points().isEmpty());
+    app_->desk().close();
+    waitFor([&] { return textOf("accuracyTold") == "Measuring was given up, since a session began."; });
+}
+
 TEST_F(AccuracyPage, WhatCannotBeWrittenIsSaidInOneSentence) {
     // Truth: closed form: the line of the factor's key; a line that somebody added meanwhile.
     measure();

@@ -1196,6 +1196,22 @@
         <source>cells of %1 mm</source>
         <translation>Zellen von %1 mm</translation>
     </message>
+    <message>
+        <source>%1 MB</source>
+        <translation>%1 MB</translation>
+    </message>
+    <message>
+        <source>%1 of %2 ticks end in the next one</source>
+        <translation>%1 von %2 Takten enden erst im nächsten</translation>
+    </message>
+    <message>
+        <source>The trials of this condition are done with real parts: choose another one.</source>
+        <translation>Die Durchgänge dieser Bedingung werden mit echten Teilen gemacht: Wählen Sie eine andere.</translation>
+    </message>
+    <message>
+        <source>Measuring was given up, since a session began.</source>
+        <translation>Die Messung wurde aufgegeben, weil eine Sitzung begann.</translation>
+    </message>
 </context>
 <context>
     <name>data</name>
