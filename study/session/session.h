@@ -33,7 +33,9 @@ class Session {
 public:
     static constexpr std::int64_t kTicksPerPoll = 20;
     static constexpr std::int64_t kTicksPerRest = 100;  // of a rest at a time
-    static constexpr int kSilentPolls = 50;             // looks without any record after which the loop counts as dead
+    // Looks without any record after which the loop counts as dead: three seconds. A virtual machine was seen to stop
+    // one processor for one.
+    static constexpr int kSilentPolls = 150;
 
     Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, SessionListener listener);
     ~Session();  // stops the apparatus if a trial is running

@@ -97,6 +97,12 @@ public:
         return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
     }
 
+    /// It does not run any more; wait() still tells how it ended.
+    bool hasEnded() const {
+        siginfo_t info{};
+        return waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid != 0;
+    }
+
     std::string out() const { return readText(folder_ / ".out"); }
     std::string err() const { return readText(folder_ / ".err"); }
 

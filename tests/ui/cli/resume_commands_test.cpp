@@ -103,6 +103,12 @@ private:
         return runProgram(console_.path(), words);
     }
 
+    /// Throws where waiting will not help: the program has ended by itself.
+    void waitAMoment() const {
+        if (program_->hasEnded()) throw std::runtime_error("the program has ended: " + program_->err());
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+
     /// Says it until the session is where it can be obeyed; throws where waiting will not help.
     void say(const std::vector<std::string>& words) const {
         for (;;) {
@@ -112,7 +118,7 @@ private:
                 return ended.err.find(not_yet) != std::string::npos;
             });
             if (!comes) throw std::runtime_error(ended.err);
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            waitAMoment();
         }
     }
 
@@ -122,13 +128,11 @@ private:
     }
 
     void waitForSession() const {
-        while (tell({"done"}).err.find("no session runs on it") != std::string::npos)
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        while (tell({"done"}).err.find("no session runs on it") != std::string::npos) waitAMoment();
     }
 
     void waitForPause() const {
-        while (tell({"pause"}).err.find("the session is paused already") == std::string::npos)
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        while (tell({"pause"}).err.find("the session is paused already") == std::string::npos) waitAMoment();
     }
 
     std::string newestAttempt() const {
