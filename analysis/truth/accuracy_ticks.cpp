@@ -49,7 +49,7 @@ scene::ContactSpec contactOf(const scene::ContactSpec& own, const TickSetting& s
     contact.budget_nodes = setting.field.budget_nodes;
     contact.two_way = setting.two_way;
     contact.spacing = setting.field.spacing;
-    if (setting.field.tolerance != own.tolerance) contact.cell = 0.0;
+    contact.cell = cellOf(own, setting);
     contact.tolerance = setting.field.tolerance;
     return contact;
 }
@@ -281,6 +281,10 @@ void markFront(std::vector<PathCost>& rows, const ErrorOf& errorOf, bool PathCos
 }
 
 }  // namespace
+
+double cellOf(const scene::ContactSpec& own, const TickSetting& setting) {
+    return setting.field.tolerance == own.tolerance ? own.cell : 0.0;
+}
 
 TickSpread tickSpreadOf(std::vector<double> values) {
     if (values.empty()) return {};

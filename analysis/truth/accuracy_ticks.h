@@ -18,6 +18,10 @@ struct TickSetting {
     bool two_way = false;                               // likewise
 };
 
+/// The edge of a field cell with this setting, in a scene whose contact is `own` [m]; 0: chosen from the tolerance. A
+/// cell that the scene names belongs to its own tolerance.
+double cellOf(const scene::ContactSpec& own, const TickSetting& setting);
+
 /// What is combined. An empty list: all methods, all geometries, the scene's own mode, ways and budget; the scene's own
 /// tolerance and spacing, and twice each (a scene that names a cell: its own tolerance alone).
 struct TickSpace {

@@ -15,10 +15,6 @@ namespace {
 constexpr double kPathShare = 0.1;   // of the work
 constexpr double kRounding = 1e-12;  // relative: what a value in a file's units may lose on its way to SI and back
 
-double cellOf(const scene::ContactSpec& own, const truth::TickSetting& setting) {
-    return setting.field.tolerance == own.tolerance ? own.cell : 0.0;
-}
-
 bool same(double a, double b) { return std::abs(a - b) <= kRounding * std::max(std::abs(a), std::abs(b)); }
 
 /// The settings that a study may have: both ways where the points of one would miss something, and none with which a
@@ -33,7 +29,7 @@ truth::TickSettings feltSettings(const scene::SceneSpec& scene, scene::BuildStor
             asked.contact.geometry = setting.geometry;
             asked.contact.method = setting.method;
             asked.contact.spacing = setting.field.spacing;
-            asked.contact.cell = cellOf(scene.contact, setting);
+            asked.contact.cell = truth::cellOf(scene.contact, setting);
             asked.contact.tolerance = setting.field.tolerance;
             if (!setting.two_way) setting.two_way = !protocol::oneWayFeelsAll(asked, geometries);
             asked.contact.two_way = setting.two_way;
@@ -77,7 +73,7 @@ Result<TickFront> measureFront(const plan::Condition& condition, const truth::Ti
         const auto named = std::find_if(all.settings.begin(), all.settings.end(),
                                         [&](const auto& each) { return truth::settingText(each) == what; });
         now.setting = named == all.settings.end() ? nullptr : &*named;
-        now.cell = now.setting != nullptr ? cellOf(condition.scene.contact, *now.setting) : 0.0;
+        now.cell = now.setting != nullptr ? truth::cellOf(condition.scene.contact, *now.setting) : 0.0;
         now.share = kPathShare + (1.0 - kPathShare) * done;
         tell();
     };
@@ -87,7 +83,7 @@ Result<TickFront> measureFront(const plan::Condition& condition, const truth::Ti
                      std::move(all.left_out)};
 }
 
-double cellOf(const TickFront& front, const truth::TickSetting& setting) { return cellOf(front.own, setting); }
+double cellOf(const TickFront& front, const truth::TickSetting& setting) { return truth::cellOf(front.own, setting); }
 
 bool isRenderedBy(const scene::SceneSpec& scene, const TickFront& front, const truth::TickSetting& setting) {
     const scene::ContactSpec& contact = scene.contact;
