@@ -286,9 +286,9 @@ store::Store::Opened openForRun(const RunOptions& options, const session::Sessio
 
 /// What is kept for the session, its questionnaires as the protocol was imported with them, whatever became of their
 /// files.
-Result<KeptPlan> keptFor(const store::Unfinished& session, const StoredPlans& plans, const store::StoreReader& reader,
+Result<KeptPlan> keptFor(const store::Unfinished& session, const store::StoreReader& reader,
                          const plan::StudyPlan& draft) {
-    auto kept = plans.kept(session.protocol_sha256);
+    auto kept = keptPlan(reader, session.protocol_sha256);
     if (!kept) return kept;
     auto texts = reader.questionnaireTexts(session.protocol_sha256);
     if (!texts) return texts.errors();
@@ -422,7 +422,7 @@ Result<RunEnd> resumeSession(const ResumeOptions& resume, RunOptions options,
     StoredPlans plans(*reader, resume.meshes, options.import_limits);
     const auto draft = plans.draft(session->protocol_sha256);
     if (!draft) return draft.errors();
-    const auto kept = keptFor(*session, plans, *reader, *draft);
+    const auto kept = keptFor(*session, *reader, *draft);
     if (!kept) return kept.errors();
     const auto plan = freeze(*draft, *kept, {.seed = session->seed}, options.import_limits);
     if (!plan) return plan.errors();

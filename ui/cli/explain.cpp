@@ -10,6 +10,7 @@
 #include "study/run/files/builds.h"
 #include "study/run/files/known_names.h"
 #include "study/run/files/protocol_files.h"
+#include "study/run/files/stored_plans.h"
 #include "study/run/freeze.h"
 #include "study/run/machine/auto_accuracy.h"
 #include "study/run/machine/calibration.h"
@@ -115,26 +116,18 @@ void explainStability(const plan::StudyPlan& plan, std::span<const DeviceDescrip
 
 /// What the study's database keeps, or a run that began it now on this machine would keep.
 Result<run::KeptPlan> keptFor(const std::string& database, const plan::StudyPlan& draft, scene::BuildStore* builds) {
-    run::KeptPlan kept{sha256Hex(draft.source_text), draft.stable_stiffness, {}, {}};
+    const std::string sha256 = sha256Hex(draft.source_text);
     if (!database.empty()) {
         const auto reader = store::StoreReader::open(database);
         if (!reader) return reader.errors();
-        auto stable = reader->stableStiffness(kept.protocol_sha256);
-        if (!stable) return stable.errors();
-        auto accuracy = reader->accuracy();
-        if (!accuracy) return accuracy.errors();
-        kept.stable_stiffness = *std::move(stable);
-        auto geometry = reader->contactGeometry(kept.protocol_sha256);
-        if (!geometry) return geometry.errors();
-        kept.geometry = *std::move(geometry);
-        kept.accuracy = *std::move(accuracy);
-        std::erase_if(kept.accuracy,
-                      [&](const store::AccuracyRow& row) { return row.protocol_sha256 != kept.protocol_sha256; });
-    } else if (run::asksForAccuracy(draft)) {
+        return run::keptPlan(*reader, sha256);
+    }
+    run::KeptPlan kept{sha256, draft.stable_stiffness, {}, {}};
+    if (run::asksForAccuracy(draft)) {
         ProgressLine progress;
         auto measured = run::measureAccuracy(
-            draft, kept.protocol_sha256,
-            [&](const std::string& what, double share) { progress.show(progressBar(what, share)); }, builds);
+            draft, sha256, [&](const std::string& what, double share) { progress.show(progressBar(what, share)); },
+            builds);
         if (!measured) return measured.errors();
         kept.accuracy = *std::move(measured);
     }

@@ -9,6 +9,17 @@
 
 namespace passung::run {
 
+Result<KeptPlan> keptPlan(const store::StoreReader& reader, const std::string& sha256) {
+    auto stable = reader.stableStiffness(sha256);
+    if (!stable) return stable.errors();
+    auto accuracy = reader.accuracy();
+    if (!accuracy) return accuracy.errors();
+    std::erase_if(*accuracy, [&](const store::AccuracyRow& row) { return row.protocol_sha256 != sha256; });
+    auto geometry = reader.contactGeometry(sha256);
+    if (!geometry) return geometry.errors();
+    return KeptPlan{sha256, *std::move(stable), *std::move(accuracy), *std::move(geometry)};
+}
+
 StoredPlans::StoredPlans(const store::StoreReader& reader, const std::string& meshes, const ImportLimits& limits)
     : reader_(reader), limits_(limits) {
     // Where the protocol's file was is not stored: a path of one machine means nothing on another.
@@ -23,7 +34,7 @@ Result<plan::FrozenPlan> StoredPlans::plan(const std::string& sha256) {
     if (const auto known = plans_.find(sha256); known != plans_.end()) return known->second;
     const auto draft = this->draft(sha256);
     if (!draft) return draft.errors();
-    const auto kept = this->kept(sha256);
+    const auto kept = keptPlan(reader_, sha256);
     if (!kept) return kept.errors();
     const auto plan = freeze(*draft, *kept, {}, limits_);
     if (plan) plans_.emplace(sha256, *plan);
@@ -36,16 +47,6 @@ Result<plan::StudyPlan> StoredPlans::draft(const std::string& sha256) const {
     for (const auto& row : *rows)
         if (row.sha256 == sha256) return read(row);
     return Error{.message = "is not in the database", .key = "protocol", .value = sha256};
-}
-
-Result<KeptPlan> StoredPlans::kept(const std::string& sha256) const {
-    auto stable = reader_.stableStiffness(sha256);
-    if (!stable) return stable.errors();
-    auto accuracy = reader_.accuracy();
-    if (!accuracy) return accuracy.errors();
-    auto geometry = reader_.contactGeometry(sha256);
-    if (!geometry) return geometry.errors();
-    return KeptPlan{sha256, *std::move(stable), *std::move(accuracy), *std::move(geometry)};
 }
 
 /// The stored protocol with the mesh files of the first folder that has them all.

@@ -12,6 +12,9 @@
 
 namespace passung::run {
 
+/// Values that the database keeps for the protocol with this hash.
+Result<KeptPlan> keptPlan(const store::StoreReader& reader, const std::string& sha256);
+
 /// The protocols of a database as it runs them; each is read once.
 class StoredPlans {
 public:
@@ -24,8 +27,6 @@ public:
     /// The stored text, read with the stable stiffness that was kept. Errors: the protocol is not there, or a mesh file
     /// of it is missing or another one than at the time.
     Result<plan::StudyPlan> draft(const std::string& sha256) const;
-    /// Values that the database keeps for the protocol.
-    Result<KeptPlan> kept(const std::string& sha256) const;
 
 private:
     Result<plan::StudyPlan> read(const store::ProtocolRow& row) const;
