@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -58,19 +59,40 @@ std::size_t join(geometry::TriangleMesh& mesh, const std::vector<std::uint32_t>&
     return joined;
 }
 
+/// The first vertex at each position that is asked for; a hash table with linear probing.
+class FirstAt {
+public:
+    explicit FirstAt(const std::vector<Vec3>& vertices)
+        : vertices_(vertices), slots_(std::bit_ceil(2 * vertices.size() + 1), kNoIndex) {}
+
+    /// `v` itself if none before it was there.
+    std::uint32_t of(std::uint32_t v) {
+        std::size_t slot = static_cast<std::size_t>(hash(vertices_[v])) & (slots_.size() - 1);
+        while (slots_[slot] != kNoIndex && vertices_[slots_[slot]] != vertices_[v])
+            slot = (slot + 1) & (slots_.size() - 1);
+        if (slots_[slot] == kNoIndex) slots_[slot] = v;
+        return slots_[slot];
+    }
+
+private:
+    static std::uint64_t hash(const Vec3& p) {
+        std::uint64_t h = 0;
+        for (const double x : p) {
+            h = (h ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15u;  // -0 lies where 0 does
+            h ^= h >> 32;
+        }
+        return h;
+    }
+
+    const std::vector<Vec3>& vertices_;
+    std::vector<std::uint32_t> slots_;
+};
+
 /// Joins vertices at equal positions.
 std::size_t weld(geometry::TriangleMesh& mesh) {
-    std::vector<std::uint32_t> order(mesh.vertices.size());
-    std::iota(order.begin(), order.end(), 0u);
-    const auto key = [&](std::uint32_t i) {
-        const Vec3& v = mesh.vertices[i];
-        return std::tuple(v.x(), v.y(), v.z());
-    };
-    std::sort(order.begin(), order.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+    FirstAt first(mesh.vertices);
     std::vector<std::uint32_t> first_at(mesh.vertices.size());
-    for (std::size_t k = 0; k < order.size(); ++k)
-        first_at[order[k]] = k > 0 && key(order[k]) == key(order[k - 1]) ? first_at[order[k - 1]] : order[k];
+    for (std::uint32_t v = 0; v < first_at.size(); ++v) first_at[v] = first.of(v);
     return join(mesh, first_at);
 }
 

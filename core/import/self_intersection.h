@@ -13,7 +13,7 @@ struct Crossings {
 };
 
 /// Triangles that touch, share an edge or lie upon each other do not count, nor more than 256 around one. The same on
-/// every machine; its time grows as n log n for a surface whose triangles do not pile up.
+/// every machine; its time grows as n for a surface whose triangles do not pile up.
 Crossings crossingsOf(const geometry::TriangleMesh& mesh);
 
 }  // namespace passung::importer
