@@ -24,12 +24,14 @@ struct ClusterTree::Builder {
     std::vector<FaceSummary> summaries;
     std::vector<std::uint32_t> order;
     std::vector<std::uint32_t> marks;  // per vertex: the last cluster that has it
+    std::vector<std::uint32_t> found;  // vertices of the cluster at hand
     std::uint32_t mark = 0;
 
     Builder(ClusterTree& of, const TriangleMesh& triangles) : tree(of), mesh(mergeFlatTriangles(triangles)) {
         order.resize(mesh.faces.size());
         std::iota(order.begin(), order.end(), 0u);
         marks.assign(mesh.vertices.size(), 0);
+        summaries.reserve(mesh.faces.size());
         for (const ConvexFace& face : mesh.faces) {
             Bounds box;
             Vec3 area = Vec3::Zero();
@@ -49,7 +51,7 @@ struct ClusterTree::Builder {
         Bounds box;
         cluster.first = static_cast<std::uint32_t>(tree.x_.size());
         std::size_t corners = 0;
-        std::vector<std::uint32_t> found;
+        found.clear();
         for (std::size_t k = first; k < end; ++k)
             for (const std::uint32_t v : mesh.faces[order[k]].corners) {
                 if (marks[v] == mark) continue;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <map>
+#include <cstdint>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -14,32 +16,57 @@ namespace {
 constexpr double kSameWay = 0.999;        // cosine of the normals of triangles of one face
 constexpr std::size_t kMostCorners = 64;  // of a face: more do not pay
 constexpr int kRounds = 8;
+constexpr std::uint32_t kNobody = ~0u;
+constexpr std::size_t kMostSides = 64;  // from one vertex that are looked through
 
 using Loop = std::vector<std::uint32_t>;
 
-struct CellHash {
-    std::size_t operator()(const std::array<std::int64_t, 3>& cell) const {
-        std::uint64_t h = 0xcbf29ce484222325u;
-        for (const std::int64_t c : cell) h = (h ^ static_cast<std::uint64_t>(c)) * 0x100000001b3u;
-        return static_cast<std::size_t>(h ^ h >> 29);
+/// Vertices by the cells of a grid that they lie in, the first one of each cell; a hash table with linear probing.
+class FirstInCell {
+public:
+    explicit FirstInCell(std::size_t most) : slots_(std::bit_ceil(2 * most + 1)) {}
+
+    /// The name of the first one that lay there: `name`, if this is it.
+    std::uint32_t of(const Vec3& p, std::uint32_t name) {
+        Slot here{{}, name};
+        for (std::size_t i = 0; i < 3; ++i) here.cell[i] = std::llround(p[static_cast<Eigen::Index>(i)] / kWelded);
+        std::size_t at = hash(here.cell) & (slots_.size() - 1);
+        while (slots_[at].name != kNobody && slots_[at].cell != here.cell) at = (at + 1) & (slots_.size() - 1);
+        if (slots_[at].name == kNobody) slots_[at] = here;
+        return slots_[at].name;
     }
+
+private:
+    using Cell = std::array<std::int64_t, 3>;
+    struct Slot {
+        Cell cell{};
+        std::uint32_t name = kNobody;
+    };
+
+    static std::size_t hash(const Cell& cell) {
+        std::uint64_t h = 0;
+        for (const std::int64_t c : cell) {
+            h = (h ^ static_cast<std::uint64_t>(c)) * 0x9e3779b97f4a7c15u;
+            h ^= h >> 32;
+        }
+        return static_cast<std::size_t>(h);
+    }
+
+    std::vector<Slot> slots_;
 };
 
 /// The vertices that are not the same place, and which one each of the mesh's is.
 std::vector<std::uint32_t> weld(const TriangleMesh& mesh, std::vector<Vec3>& vertices) {
-    std::unordered_map<std::array<std::int64_t, 3>, std::uint32_t, CellHash> cells;
+    FirstInCell first(mesh.vertices.size());
     std::vector<std::uint32_t> which;
+    which.reserve(mesh.vertices.size());
     for (const Vec3& v : mesh.vertices) {
-        std::array<std::int64_t, 3> cell;
-        for (std::size_t i = 0; i < 3; ++i) cell[i] = std::llround(v[static_cast<Eigen::Index>(i)] / kWelded);
-        const auto [at, added] = cells.try_emplace(cell, static_cast<std::uint32_t>(vertices.size()));
-        if (added) vertices.push_back(v);
-        which.push_back(at->second);
+        const auto next = static_cast<std::uint32_t>(vertices.size());
+        which.push_back(first.of(v, next));
+        if (which.back() == next) vertices.push_back(v);
     }
     return which;
 }
-
-std::uint64_t sideOf(std::uint32_t from, std::uint32_t to) { return std::uint64_t{from} << 32 | to; }
 
 struct Growing {
     Loop loop;
@@ -48,10 +75,62 @@ struct Growing {
     bool gone = false;
 };
 
+/// Which face has a side last, of all that run from one vertex to another. Those from a vertex lie beside each other,
+/// but for the hub of a large fan.
+class SideOwners {
+public:
+    SideOwners(const std::vector<Growing>& faces, std::size_t vertices) : begin_(vertices + 1, 0) {
+        for (const Growing& face : faces)
+            if (!face.gone)
+                for (const std::uint32_t from : face.loop) ++begin_[from + 1];
+        for (std::size_t& sides : begin_)
+            if (sides > kMostSides) sides = 0;
+        std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+        sides_.resize(begin_.back());
+        for (std::uint32_t f = 0; f < faces.size(); ++f)
+            if (!faces[f].gone) note(faces[f].loop, f);
+    }
+
+    void note(const Loop& loop, std::uint32_t face) {
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const std::uint32_t from = loop[i], to = loop[(i + 1) % loop.size()];
+            if (Side* side = placeOf(from, to))
+                *side = {to, face};
+            else
+                others_[std::uint64_t{from} << 32 | to] = face;
+        }
+    }
+
+    /// kNobody: none.
+    std::uint32_t of(std::uint32_t from, std::uint32_t to) {
+        const Side* side = placeOf(from, to);
+        if (side != nullptr && side->face != kNobody) return side->face;
+        const auto found = others_.find(std::uint64_t{from} << 32 | to);
+        return found == others_.end() ? kNobody : found->second;
+    }
+
+private:
+    struct Side {
+        std::uint32_t to = 0, face = kNobody;
+    };
+
+    /// Where the side is, or a free place for it among those from its first vertex.
+    Side* placeOf(std::uint32_t from, std::uint32_t to) {
+        for (std::size_t i = begin_[from]; i < begin_[from + 1]; ++i)
+            if (sides_[i].face == kNobody || sides_[i].to == to) return &sides_[i];
+        return nullptr;
+    }
+
+    std::vector<std::size_t> begin_;  // of the sides from a vertex
+    std::vector<Side> sides_;
+    std::unordered_map<std::uint64_t, std::uint32_t> others_;  // for which there is no place
+};
+
 class Merger {
 public:
     explicit Merger(const TriangleMesh& mesh) {
         const std::vector<std::uint32_t> which = weld(mesh, result_.vertices);
+        faces_.reserve(mesh.triangles.size());
         for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
             const auto& t = mesh.triangles[i];
             Growing face;
@@ -88,14 +167,12 @@ private:
 
     /// Each face takes up those beside it as long as it stays convex.
     bool mergeOnce() {
-        owners_.clear();
-        for (std::uint32_t f = 0; f < faces_.size(); ++f)
-            if (!faces_[f].gone) note(f);
+        SideOwners owners(faces_, result_.vertices.size());
         bool merged = false;
         for (std::uint32_t f = 0; f < faces_.size(); ++f) {
             if (faces_[f].gone || faces_[f].normal.isZero()) continue;
             for (std::size_t i = 0; i < faces_[f].loop.size();) {
-                const bool taken = tryTake(f, i);
+                const bool taken = tryTake(owners, f, i);
                 merged = merged || taken;
                 i = taken ? 0 : i + 1;
             }
@@ -103,18 +180,13 @@ private:
         return merged;
     }
 
-    void note(std::uint32_t f) {
-        const Loop& loop = faces_[f].loop;
-        for (std::size_t i = 0; i < loop.size(); ++i) owners_[sideOf(loop[i], loop[(i + 1) % loop.size()])] = f;
-    }
-
     /// Takes up the face on the other side of side `i` of face `f`.
-    bool tryTake(std::uint32_t f, std::size_t i) {
+    bool tryTake(SideOwners& owners, std::uint32_t f, std::size_t i) {
         Growing& face = faces_[f];
         const std::uint32_t from = face.loop[i], to = face.loop[(i + 1) % face.loop.size()];
-        const auto found = owners_.find(sideOf(to, from));
-        if (found == owners_.end() || found->second == f) return false;
-        Growing& other = faces_[found->second];
+        const std::uint32_t across = owners.of(to, from);
+        if (across == kNobody || across == f) return false;
+        Growing& other = faces_[across];
         if (other.gone || other.normal.dot(face.normal) < kSameWay) return false;
         const auto start = std::find(other.loop.begin(), other.loop.end(), from);
         if (start == other.loop.end()) return false;
@@ -132,7 +204,7 @@ private:
         if (joined.size() > kMostCorners || !isConvex(joined, face.normal)) return false;
         face.loop = std::move(joined);
         other.gone = true;
-        note(f);
+        owners.note(face.loop, f);
         return true;
     }
 
@@ -166,7 +238,6 @@ private:
 
     ConvexFaces result_;
     std::vector<Growing> faces_;
-    std::unordered_map<std::uint64_t, std::uint32_t> owners_;
 };
 
 }  // namespace

@@ -44,60 +44,62 @@ int binOf(double centre, double low, double extent) {
     return std::clamp(static_cast<int>(kBins * ((centre - low) / extent)), 0, kBins - 1);
 }
 
-/// Cheapest of the kBins - 1 splits along an axis by the surface area heuristic: {cost, bins on the left}.
-std::pair<double, int> cheapestSplit(const TreeTriangle* items, std::uint32_t count, int axis, double low,
-                                     double extent) {
-    std::array<Bin, kBins> bins;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        Bin& bin = bins[static_cast<std::size_t>(binOf(items[i].centre[axis], low, extent))];
-        bin.box.extend(items[i].low);
-        bin.box.extend(items[i].high);
-        ++bin.count;
-    }
+using Bins = std::array<Bin, kBins>;
+
+/// Where triangles are parted: bins of an axis, so many of them on the left.
+struct Cut {
+    double cost = std::numeric_limits<double>::infinity();
+    int axis = -1, bins = 0;
+};
+
+/// Takes the cheapest of an axis' kBins - 1 splits by the surface area heuristic, if it is cheaper than `best`.
+void improve(Cut& best, const Bins& bins, int axis, std::uint32_t count) {
     std::array<double, kBins> right_cost{};
     Bin right;
     for (std::size_t b = kBins - 1; b > 0; --b) {
         right.add(bins[b]);
         right_cost[b] = right.cost();
     }
-    std::pair<double, int> best{std::numeric_limits<double>::infinity(), 0};
     Bin left;
     for (std::size_t b = 1; b < kBins; ++b) {
         left.add(bins[b - 1]);
         const double cost = left.cost() + right_cost[b];
-        if (left.count > 0 && left.count < count && cost < best.first) best = {cost, static_cast<int>(b)};
+        if (left.count > 0 && left.count < count && cost < best.cost) best = {cost, axis, static_cast<int>(b)};
     }
+}
+
+/// No axis of it, if all centres are at one place.
+Cut cheapestCut(const TreeTriangle* items, std::uint32_t count, const Bounds& centres) {
+    const Vec3 extent = centres.size();
+    std::array<Bins, 3> bins;
+    for (std::uint32_t i = 0; i < count; ++i)
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!(extent[axis] > 0.0)) continue;
+            const int at = binOf(items[i].centre[axis], centres.low[axis], extent[axis]);
+            Bin& bin = bins[static_cast<std::size_t>(axis)][static_cast<std::size_t>(at)];
+            bin.box.extend(items[i].low);
+            bin.box.extend(items[i].high);
+            ++bin.count;
+        }
+    Cut best;
+    for (int axis = 0; axis < 3; ++axis)
+        if (extent[axis] > 0.0) improve(best, bins[static_cast<std::size_t>(axis)], axis, count);
     return best;
 }
 
 /// Sorts `items` into two groups, in the middle if `by_halves`, else where it is cheapest; how many are in the first.
-/// Never 0, never all.
-std::uint32_t split(TreeTriangle* items, std::uint32_t count, bool by_halves) {
-    Bounds centres;
-    for (std::uint32_t i = 0; i < count; ++i) centres.extend(items[i].centre);
+/// Never 0, never all. `centres`: the box of theirs.
+std::uint32_t split(TreeTriangle* items, std::uint32_t count, const Bounds& centres, bool by_halves) {
+    const Cut cut = by_halves ? Cut{} : cheapestCut(items, count, centres);
+    if (cut.axis >= 0) {
+        const double low = centres.low[cut.axis], extent = centres.size()[cut.axis];
+        const TreeTriangle* middle = std::stable_partition(items, items + count, [&](const TreeTriangle& item) {
+            return binOf(item.centre[cut.axis], low, extent) < cut.bins;
+        });
+        return static_cast<std::uint32_t>(middle - items);
+    }
     int axis = 0;
     centres.size().maxCoeff(&axis);
-    if (!by_halves) {
-        double best_cost = std::numeric_limits<double>::infinity();
-        int best_axis = -1, best_bins = 0;
-        for (int k = 0; k < 3; ++k) {
-            const double extent = centres.size()[k];
-            if (!(extent > 0.0)) continue;
-            const auto [cost, bins] = cheapestSplit(items, count, k, centres.low[k], extent);
-            if (cost < best_cost) {
-                best_cost = cost;
-                best_axis = k;
-                best_bins = bins;
-            }
-        }
-        if (best_axis >= 0) {
-            const double low = centres.low[best_axis], extent = centres.size()[best_axis];
-            const TreeTriangle* middle = std::stable_partition(items, items + count, [&](const TreeTriangle& item) {
-                return binOf(item.centre[best_axis], low, extent) < best_bins;
-            });
-            return static_cast<std::uint32_t>(middle - items);
-        }
-    }
     std::sort(items, items + count, [axis](const TreeTriangle& a, const TreeTriangle& b) {
         return std::pair(a.centre[axis], a.index) < std::pair(b.centre[axis], b.index);
     });
@@ -130,14 +132,15 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
     while (!tasks.empty()) {
         const Task task = tasks.back();
         tasks.pop_back();
-        Bounds box;
+        Bounds box, centres;
         for (std::uint32_t i = task.first; i < task.first + task.count; ++i) {
             box.extend(items[i].low);
             box.extend(items[i].high);
+            centres.extend(items[i].centre);
         }
         nodes_[task.node] = {box.low, box.high, task.first, task.count};
         if (task.count <= kLeafTriangles) continue;
-        const std::uint32_t left = split(items.data() + task.first, task.count, task.depth >= kSahDepth);
+        const std::uint32_t left = split(items.data() + task.first, task.count, centres, task.depth >= kSahDepth);
         const auto child = static_cast<std::uint32_t>(nodes_.size());
         nodes_.resize(nodes_.size() + 2);
         nodes_[task.node].first = child;
