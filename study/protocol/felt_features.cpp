@@ -59,9 +59,13 @@ std::vector<ThinFeature> withoutRelief(std::vector<ThinFeature> features) {
     return features;
 }
 
+/// Else no feature is lost, and nobody looks for them: of a large mesh that takes longer than all else.
+bool isSampled(const scene::SceneSpec& scene) { return scene::geometryOf(scene).geometry == scene::Geometry::Field; }
+
 /// The smallest feature of an obstacle that slips between points of this spacing [m]; infinite if there is none.
 double smallestFeature(const scene::SceneSpec& scene, double spacing, PartGeometries& geometries) {
     double smallest = std::numeric_limits<double>::infinity();
+    if (!isSampled(scene)) return smallest;
     for (const scene::PartSpec& part : scene.parts) {
         if (part.held || isSheet(part, geometries)) continue;
         for (const ThinFeature& feature : geometries.thin(part, kCoverShare * spacing, ThinIn::Points))
@@ -83,7 +87,7 @@ public:
     FeltCheck(const scene::SceneSpec& scene, PartGeometries& geometries) : scene_(scene), geometries_(geometries) {}
 
     std::vector<Unfelt> run() {
-        if (scene::geometryOf(scene_).geometry != scene::Geometry::Field) return {};  // nothing is sampled
+        if (!isSampled(scene_)) return {};
         const scene::PartSpec* held = plan::heldPart(scene_);
         for (part_ = 0; held != nullptr && part_ < scene_.parts.size(); ++part_) {
             const scene::PartSpec& part = scene_.parts[part_];
@@ -193,6 +197,7 @@ ContactDefaults defaultsFor(const scene::SceneSpec& scene, PartGeometries& geome
 }
 
 bool oneWayFeelsAll(const scene::SceneSpec& scene, PartGeometries& geometries) {
+    if (!isSampled(scene)) return true;
     return std::all_of(scene.parts.begin(), scene.parts.end(), [&](const scene::PartSpec& part) {
         return part.held || geometries.thin(part, kCoverShare * scene.contact.spacing, ThinIn::Points).empty();
     });

@@ -21,14 +21,14 @@ struct ContactDefaults {
 };
 
 /// Spacing and tolerance that follow the size of the held part, a fiftieth and 1/2500 of it, and the smallest feature
-/// of any obstacle, rounded to 1, 2 or 5 times a power of ten; of a part of 50 mm 1 mm and 20 µm. They do not fall
-/// below what makes more than about kDefaultPoints points of the held part, or a field of more than a few million
-/// cells.
+/// of any obstacle where contact is sampled, rounded to 1, 2 or 5 times a power of ten; of a part of 50 mm 1 mm and 20
+/// µm. They do not fall below what makes more than about kDefaultPoints points of the held part, or a field of more
+/// than a few million cells.
 ContactDefaults defaultsFor(const scene::SceneSpec& scene, PartGeometries& geometries);
 inline constexpr double kDefaultPoints = 4e4;
 
-/// Are the obstacles free of ends that slip between the held part's points, with the scene's spacing? Else contact has
-/// to be looked for both ways.
+/// Are the obstacles free of ends that slip between the held part's points, with the scene's spacing? True where
+/// contact is not sampled. Else contact has to be looked for both ways.
 bool oneWayFeelsAll(const scene::SceneSpec& scene, PartGeometries& geometries);
 
 /// Adds an error at the obstacle's table for every pin, fin, wall or edge that contact as `scene` asks for it will not

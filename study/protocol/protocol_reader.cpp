@@ -64,12 +64,13 @@ Examined examined(Read read) {
 class ProtocolReader {
 public:
     ProtocolReader(const Node& document, std::span<const DeviceDescription> devices,
-                   std::span<const std::string> known_measures, scene::BuildStore* builds)
+                   std::span<const std::string> known_measures, scene::BuildStore* builds, scene::Geometry automatic)
         : document_(document),
           devices_(devices),
           known_measures_(known_measures),
           root_(document, {"protocol"}, "", errors_),
-          geometries_(builds) {}
+          geometries_(builds),
+          scenes_{devices, geometries_, automatic} {}
 
     /// The plan as far as it can be read; complete if there are no errors.
     Read read() {
@@ -333,7 +334,7 @@ private:
         condition.name += suffix;
 
         const std::size_t before = errors_.size();
-        auto content = readSceneNode(tables.scene, {"scene"}, "scene", devices_, geometries_, errors_);
+        auto content = readSceneNode(tables.scene, {"scene"}, "scene", scenes_, errors_);
         const Node* device = tables.scene.find("device");
         const bool names_device =
             device != nullptr && (device->kind != Node::Kind::Table || device->find("preset") != nullptr);
@@ -353,7 +354,7 @@ private:
         tasks_sound_ = tasks_sound_ && task && root_.has("task");
         readConditionExtras(tables, condition, errors_);
         const bool pair = std::holds_alternative<plan::DiscriminationPairTask>(condition.task.form);
-        if (task && pair) condition.comparison = readComparison(tables, condition, devices_, geometries_, errors_);
+        if (task && pair) condition.comparison = readComparison(tables, condition, scenes_, errors_);
         // Of accuracy = "auto" nothing is picked with which something would not be felt.
         if (content.sound && !(content.accuracy_budget > 0.0))
             checkFelt(tables.scene, "scene", condition.scene, geometries_, undoable_, warnings_);
@@ -490,6 +491,7 @@ private:
     plan::StudyPlan plan_;
     bool levels_sound_ = true, tasks_sound_ = true, staircases_sound_ = true;  // so far
     PartGeometries geometries_;
+    SceneReading scenes_;
     std::vector<std::string> warnings_;            // about parts and ways
     const StaircaseContent* presented_ = nullptr;  // whose levels are being read
     Errors undoable_;                              // see Read
@@ -500,7 +502,8 @@ private:
 
 /// Without the files that the study names.
 Read readText(const std::string& text, const std::string& path, std::span<const DeviceDescription> devices,
-              std::span<const std::string> known_measures, scene::BuildStore* builds) {
+              std::span<const std::string> known_measures, scene::BuildStore* builds,
+              scene::Geometry automatic = scene::Geometry::Auto) {
     const auto included = includeFiles(text, path);
     if (!included) return {{}, included.errors(), {}, {}};
     auto document = parseDocument(included->text, path);
@@ -515,7 +518,7 @@ Read readText(const std::string& text, const std::string& path, std::span<const 
     relocate(*included, *document);
     if (const auto other = otherKind(*document, FileKind::Study))
         return {{}, {errorAt(document->place, "", "", *other)}, {}, {}};
-    Read read = ProtocolReader(*document, devices, known_measures, builds).read();
+    Read read = ProtocolReader(*document, devices, known_measures, builds, automatic).read();
     read.plan.source_text = included->text;
     read.plan.source_path = path;
     return read;
@@ -571,8 +574,9 @@ Result<plan::StudyPlan> readProtocolText(const std::string& text, const std::str
 
 Result<plan::StudyPlan> readBegunProtocol(const std::string& text, const std::string& path,
                                           std::span<const DeviceDescription> devices,
-                                          std::span<const std::string> known_measures, scene::BuildStore* builds) {
-    Read read = readText(text, path, devices, known_measures, builds);
+                                          std::span<const std::string> known_measures, scene::BuildStore* builds,
+                                          scene::Geometry automatic) {
+    Read read = readText(text, path, devices, known_measures, builds, automatic);
     if (!read.errors.empty()) return std::move(read.errors);
     return std::move(read.plan);
 }

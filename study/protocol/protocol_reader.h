@@ -34,10 +34,11 @@ Result<plan::StudyPlan> readProtocolText(const std::string& text, const std::str
 
 /// The same for a study that began, maybe under an earlier version of this program: what no longer may begin, because a
 /// person could not do it, feel it or tell conditions apart, or for the length of a name, may still go on and be looked
-/// at.
+/// at. `automatic`: what a geometry of contact that the text leaves to the program stands for.
 Result<plan::StudyPlan> readBegunProtocol(const std::string& text, const std::string& path,
                                           std::span<const DeviceDescription> devices,
                                           std::span<const std::string> known_measures,
-                                          scene::BuildStore* builds = nullptr);
+                                          scene::BuildStore* builds = nullptr,
+                                          scene::Geometry automatic = scene::Geometry::Auto);
 
 }  // namespace passung::protocol

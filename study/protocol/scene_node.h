@@ -24,15 +24,21 @@ struct SceneContent {
     bool sound = false;        // everything but the device
 };
 
+/// What scenes are read with.
+struct SceneReading {
+    std::span<const DeviceDescription> devices;
+    PartGeometries& geometries;                         // what parts are looked up in
+    scene::Geometry automatic = scene::Geometry::Auto;  // what a geometry that is left to the program stands for
+};
+
 /// Adds a sentence if `scene`, a table of path `path`, has contact.cell_mm and contact.tolerance_um: the first one
 /// wins.
 void warnOfTolerance(const Node& scene, const std::string& path, std::vector<std::string>& warnings);
 
 /// Reads a scene's table. `ids`: its tables in the key table; `path`: its name in messages ("scene" or "").
 /// Adds everything that is wrong to `errors`; the result is meaningful only where it says that it is sound.
-/// `geometries` is what the parts are looked up in.
 SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids, const std::string& path,
-                           std::span<const DeviceDescription> devices, PartGeometries& geometries, Errors& errors);
+                           const SceneReading& reading, Errors& errors);
 
 /// Reads one part. Lengths are in its own `unit`, else `units_per_metre` make a metre.
 scene::PartSpec readPartNode(const Node& table, const std::string& parent_path, double units_per_metre, Errors& errors);

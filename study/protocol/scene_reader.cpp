@@ -292,7 +292,8 @@ scene::Effects readEffects(const TableReader& read, Errors& errors) {
 }  // namespace
 
 SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids, const std::string& path,
-                           std::span<const DeviceDescription> devices, PartGeometries& geometries, Errors& errors) {
+                           const SceneReading& reading, Errors& errors) {
+    PartGeometries& geometries = reading.geometries;
     const std::size_t before = errors.size();
     const TableReader read(table, std::move(ids), path, errors);
     const double units = unitsPerMetre(read, 1e3);
@@ -313,7 +314,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     content.parts_sound = content.parts_sound && errors.size() == before_parts;
     const std::size_t before_device = errors.size();
     const auto device_table = open("device");
-    const DeviceDescription* device = findDevice(device_table, devices);
+    const DeviceDescription* device = findDevice(device_table, reading.devices);
     content.device = device_table.text("preset");
     content.scene.limits = readLimits(device_table, device);
     const std::size_t of_device = errors.size() - before_device;
@@ -322,6 +323,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     content.scene.registration = readRegistration(registration_table, units);
     content.scene.contact =
         readContact(contact_table, device, device_table.has("preset"), content.scene.registration.scale);
+    if (content.scene.contact.geometry == scene::Geometry::Auto) content.scene.contact.geometry = reading.automatic;
     if (const auto problem = scene::geometryProblem(content.scene); content.parts_sound && problem)
         contact_table.fail("geometry", *problem);
     if (content.parts_sound) completeContact(contact_table, content.scene, geometries);
@@ -374,7 +376,7 @@ Result<SceneOnDevice> readSceneOnDevice(const std::string& text, const std::stri
     if (const auto other = otherKind(*document, FileKind::Scene)) return errorAt(document->place, "", "", *other);
     Errors errors;
     PartGeometries geometries(builds);
-    auto content = readSceneNode(*document, {"scene"}, "", devices, geometries, errors);
+    auto content = readSceneNode(*document, {"scene"}, "", {devices, geometries}, errors);
     std::vector<std::string> warnings;
     if (content.sound) checkFelt(*document, "", content.scene, geometries, errors, warnings);
     warnOfTolerance(*document, "", warnings);

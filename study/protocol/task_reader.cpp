@@ -157,8 +157,7 @@ plan::Task readTask(const StudyTables& tables, const scene::SceneSpec* scene, Er
 }
 
 scene::SceneSpec readComparison(const StudyTables& tables, const plan::Condition& condition,
-                                std::span<const DeviceDescription> devices, PartGeometries& geometries,
-                                Errors& errors) {
+                                const SceneReading& reading, Errors& errors) {
     const std::size_t before = errors.size();
     std::vector<Override> overrides;
     flatten(*tables.task.find("comparison"), "", overrides);
@@ -175,7 +174,7 @@ scene::SceneSpec readComparison(const StudyTables& tables, const plan::Condition
         errors.insert(errors.end(), found.begin(), found.end());
     }
     if (errors.size() > before) return {};
-    auto content = readSceneNode(changed.scene, {"scene"}, "scene", devices, geometries, errors);
+    auto content = readSceneNode(changed.scene, {"scene"}, "scene", reading, errors);
     if (content.accuracy_budget > 0.0)
         errors.push_back(errorAt(tables.task.find("type")->place, "task.type", "discrimination_pair",
                                  "needs an accuracy that is named: contact.accuracy must not be \"auto\""));

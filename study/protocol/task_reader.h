@@ -1,11 +1,8 @@
 #pragma once
 
-#include <span>
-
-#include "core/base/device_description.h"
 #include "study/plan/study_plan.h"
 #include "study/protocol/factors.h"
-#include "study/protocol/part_surface.h"
+#include "study/protocol/scene_node.h"
 
 namespace passung::protocol {
 
@@ -18,6 +15,6 @@ bool isTaskKey(const std::string& type, const std::string& key);
 
 /// The scene of the other interval of a discrimination_pair: the condition's with the keys of task.comparison.
 scene::SceneSpec readComparison(const StudyTables& tables, const plan::Condition& condition,
-                                std::span<const DeviceDescription> devices, PartGeometries& geometries, Errors& errors);
+                                const SceneReading& reading, Errors& errors);
 
 }  // namespace passung::protocol

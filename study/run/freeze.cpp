@@ -1,6 +1,7 @@
 #include "study/run/freeze.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "core/scene/contact_geometry.h"
 #include "study/plan/plan_contents.h"
@@ -35,22 +36,69 @@ Result<Done> keepStiffness(std::span<const plan::StableStiffness> kept, plan::St
     return Done{};
 }
 
-void keepGeometry(const std::string& kept, scene::SceneSpec& scene) {
-    if (scene.contact.geometry != scene::Geometry::Auto) return;
-    if (const auto geometry = scene::geometryNamed(kept)) scene.contact.geometry = *geometry;
+/// The draft's text read once more, if at all, with distance fields wherever it leaves the geometry to the program:
+/// what these take from features of the parts, which nobody looked for in the draft.
+class SampledReading {
+public:
+    SampledReading(const plan::StudyPlan& draft, std::span<const plan::StableStiffness> kept,
+                   const ImportLimits& limits)
+        : draft_(draft), devices_(devicesAsKept(kept)), limits_(limits) {}
+
+    /// Of that name. Errors: the text cannot be read as it was.
+    Result<plan::Condition> condition(const std::string& name) {
+        if (!read_)
+            read_ =
+                readBegunProtocol(draft_.source_text, draft_.source_path, devices_, limits_, scene::Geometry::Field);
+        if (!*read_) return read_->errors();
+        for (const plan::Condition& condition : (*read_)->conditions)
+            if (condition.name == name) return condition;
+        return Error{.message = "is not in the study's text", .key = "condition", .value = name};
+    }
+
+private:
+    const plan::StudyPlan& draft_;
+    std::vector<DeviceDescription> devices_;
+    ImportLimits limits_;
+    std::optional<Result<plan::StudyPlan>> read_;
+};
+
+/// `sampled`: gives the same scene as it is with distance fields.
+Result<Done> keepGeometry(const std::string& kept, scene::SceneSpec& scene,
+                          const std::function<Result<scene::SceneSpec>()>& sampled) {
+    const auto geometry = scene::geometryNamed(kept);
+    if (scene.contact.geometry != scene::Geometry::Auto || !geometry) return Done{};
+    if (*geometry == scene::Geometry::Field && scene::geometryOf(scene).geometry != scene::Geometry::Field) {
+        const auto again = sampled();
+        if (!again) return again.errors();
+        scene.contact = again->contact;
+    }
+    scene.contact.geometry = *geometry;
+    return Done{};
 }
 
 /// Another version of the program may pick another one.
-void keepGeometry(std::span<const store::ContactGeometryRow> kept, plan::StudyPlan& plan) {
+Result<Done> keepGeometry(const KeptPlan& kept, plan::StudyPlan& plan, const ImportLimits& limits) {
+    SampledReading sampled(plan, kept.stable_stiffness, limits);
     for (plan::Condition& condition : plan.conditions) {
-        const auto row =
-            std::find_if(kept.begin(), kept.end(), [&](const auto& r) { return r.condition == condition.name; });
-        if (row == kept.end()) continue;
-        keepGeometry(row->geometry, condition.scene);
-        if (condition.comparison) keepGeometry(row->comparison, *condition.comparison);
+        const auto row = std::find_if(kept.geometry.begin(), kept.geometry.end(),
+                                      [&](const auto& r) { return r.condition == condition.name; });
+        if (row == kept.geometry.end()) continue;
+        const auto shown = [&](auto sceneOf) {
+            return [&, sceneOf]() -> Result<scene::SceneSpec> {
+                auto again = sampled.condition(condition.name);
+                if (!again) return again.errors();
+                return sceneOf(*again);
+            };
+        };
+        auto done = keepGeometry(row->geometry, condition.scene, shown([](const auto& again) { return again.scene; }));
+        if (done && condition.comparison)
+            done = keepGeometry(row->comparison, *condition.comparison,
+                                shown([](const auto& again) { return again.comparison.value_or(again.scene); }));
+        if (!done) return done;
         condition.params_json = protocol::paramsJson(condition);
     }
-    if (!kept.empty()) plan.expanded_json = protocol::expandedJson(plan);
+    if (!kept.geometry.empty()) plan.expanded_json = protocol::expandedJson(plan);
+    return Done{};
 }
 
 }  // namespace
@@ -60,7 +108,7 @@ Result<plan::FrozenPlan> freeze(plan::StudyPlan draft, const KeptPlan& kept, con
     draft.seed = choice.seedOf(draft);
     if (choice.trials_only) keepTrialsOnly(draft);
     if (const auto done = keepStiffness(kept.stable_stiffness, draft, limits); !done) return done.errors();
-    keepGeometry(kept.geometry, draft);
+    if (const auto done = keepGeometry(kept, draft, limits); !done) return done.errors();
     if (const auto done = applyAccuracy(kept.protocol_sha256, kept.accuracy, draft, limits); !done)
         return done.errors();
     if (kept.questionnaires)

@@ -16,9 +16,10 @@ protocol::Examined examineProtocol(const std::string& path, const ImportLimits& 
 }
 
 Result<plan::StudyPlan> readBegunProtocol(const std::string& text, const std::string& path,
-                                          std::span<const DeviceDescription> devices, const ImportLimits& limits) {
+                                          std::span<const DeviceDescription> devices, const ImportLimits& limits,
+                                          scene::Geometry automatic) {
     Builds builds(nullptr, limits);
-    return protocol::readBegunProtocol(text, path, devices, knownMeasures(), &builds);
+    return protocol::readBegunProtocol(text, path, devices, knownMeasures(), &builds, automatic);
 }
 
 Result<protocol::SceneOnDevice> readSceneOnDevice(const std::string& text, const std::string& path,

@@ -16,7 +16,8 @@ namespace passung::run {
 Result<plan::StudyPlan> readProtocol(const std::string& path, const ImportLimits& limits = {});
 protocol::Examined examineProtocol(const std::string& path, const ImportLimits& limits = {});
 Result<plan::StudyPlan> readBegunProtocol(const std::string& text, const std::string& path,
-                                          std::span<const DeviceDescription> devices, const ImportLimits& limits = {});
+                                          std::span<const DeviceDescription> devices, const ImportLimits& limits = {},
+                                          scene::Geometry automatic = scene::Geometry::Auto);
 Result<protocol::SceneOnDevice> readSceneOnDevice(const std::string& text, const std::string& path,
                                                   const ImportLimits& limits = {});
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/scene/contact_geometry.h"
+#include "study/run/files/known_names.h"
 #include "study/run/files/protocol_files.h"
 
 namespace passung::run {
@@ -61,6 +62,57 @@ TEST(Freeze, AGeometryThatTheTextLeavesOpenIsTheOneWithWhichTheStudyBegan) {
     EXPECT_NE((*frozen)->conditions[last - 1].params_json.find("\"geometry\":\"field\""), std::string::npos);
     EXPECT_NE((*frozen)->expanded_json, draft.expanded_json);
     EXPECT_EQ(geometryAt(last), scene::Geometry::ClosedForm) << "nothing is kept of it";
+}
+
+TEST(Freeze, FieldsWithWhichAStudyBeganFollowTheFeaturesOfItsParts) {
+    // Truth: closed form: a pin of 0.4 mm slips between points 1 mm apart, so that fields look both ways; no other
+    // geometry asks for that. The kept rows are those of a program whose god object had fields alone.
+    const auto text = [](const std::string& geometry) {
+        return R"(
+passung = 1
+[study]
+name = "pin"
+version = "1"
+seed = 1
+participants = 1
+[scene]
+[[scene.part]]
+name = "pin"
+shape = { kind = "cylinder", diameter = 0.4, length = 10 }
+[[scene.part]]
+name = "block"
+held = true
+shape = { kind = "box", width = 50, depth = 50, height = 10 }
+pose = { position = [0, 0, 30] }
+[scene.contact]
+method = "god_object"
+stiffness_N_per_m = 1000
+)" + geometry + R"([scene.device]
+preset = "sigma7"
+[task]
+type = "free_placement"
+position = [0, 0, 20]
+[[block]]
+name = "main"
+order = "listed"
+)";
+    };
+    const auto read = [&](const std::string& geometry) {
+        auto plan = readBegunProtocol(text(geometry), "pin.toml", knownDevices());
+        if (!plan) throw std::runtime_error(toString(plan.errors().front()));
+        return *std::move(plan);
+    };
+    const auto draft = read("");
+    ASSERT_EQ(scene::geometryOf(draft.conditions[0].scene).geometry, scene::Geometry::ClosedForm);
+    EXPECT_FALSE(draft.conditions[0].scene.contact.two_way);
+    const auto frozen = freeze(draft, {"", draft.stable_stiffness, {}, {{draft.conditions[0].name, "field", ""}}});
+    ASSERT_TRUE(frozen) << toString(frozen.errors().front());
+    const scene::ContactSpec& contact = (*frozen)->conditions[0].scene.contact;
+    const auto sampled = read("geometry = \"field\"\n");
+    EXPECT_TRUE(contact.two_way);
+    EXPECT_EQ(contact.spacing, sampled.conditions[0].scene.contact.spacing);
+    EXPECT_EQ(contact.tolerance, sampled.conditions[0].scene.contact.tolerance);
+    EXPECT_EQ((*frozen)->conditions[0].params_json, sampled.conditions[0].params_json);
 }
 
 TEST(Freeze, ARunDecidesItsSeedAndWhetherOnlyTrialsRun) {
