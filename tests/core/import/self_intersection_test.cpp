@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "core/base/random.h"
 #include "core/import/mesh_import.h"
 #include "core/shape/shape.h"
 #include "tests/support/broken_mesh.h"
+#include "tests/support/mesh_crossing.h"
 
 namespace passung::importer {
 namespace {
@@ -42,6 +45,63 @@ TEST(SelfIntersection, CountsTheTrianglesOfTwoSpikesThatCross) {
     EXPECT_EQ(crossingsOf(mesh).triangles, 2u);
     for (std::size_t v = 3; v < 6; ++v) mesh.vertices[v].y() += 3.0;
     EXPECT_EQ(crossingsOf(mesh).triangles, 0u);
+}
+
+/// Of all pairs, each looked at; triangles that share a corner touch there, so that only the edges away from it count.
+Crossings crossingsOfAllPairs(const geometry::TriangleMesh& mesh) {
+    const auto passes = [&](const geometry::Triangle& a, const geometry::Triangle& b) {
+        const test::Corners3 through{mesh.vertices[b[0]], mesh.vertices[b[1]], mesh.vertices[b[2]]};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t from = a[k], to = a[(k + 1) % 3];
+            if (std::count(b.begin(), b.end(), from) + std::count(b.begin(), b.end(), to) > 0) continue;
+            if (test::passesThrough(mesh.vertices[from], mesh.vertices[to], through)) return true;
+        }
+        return false;
+    };
+    Crossings all;
+    std::vector<char> crossing(mesh.triangles.size(), 0);
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        for (std::size_t k = i + 1; k < mesh.triangles.size(); ++k)
+            if (passes(mesh.triangles[i], mesh.triangles[k]) || passes(mesh.triangles[k], mesh.triangles[i])) {
+                crossing[i] = crossing[k] = 1;
+                all.pairs += 2;
+            }
+    all.triangles = static_cast<std::size_t>(std::count(crossing.begin(), crossing.end(), 1));
+    return all;
+}
+
+TEST(SelfIntersection, FindsWhatEveryPairLookedAtGives) {
+    // Truth: brute force over all pairs by tests/support/mesh_crossing.h. Triangles of all sizes from 1/10 000 on in
+    // heaps of all sizes, a third of them hinged to the one before by a corner or an edge.
+    Random random(5);
+    const auto point = [&](const Vec3& middle, double size) {
+        return Vec3(middle + size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+    };
+    std::size_t found = 0;
+    for (int round = 0; round < 20; ++round) {
+        geometry::TriangleMesh mesh;
+        for (std::uint32_t i = 0; i < 400; ++i) {
+            const double size = std::pow(10.0, random.uniform(-4.0, 0.0));
+            const Vec3 middle = point(Vec3::Zero(), std::pow(10.0, random.uniform(-4.0, 0.0)));
+            const std::uint32_t shared =
+                i > 0 && random.uniform() < 0.33 ? 1 + static_cast<std::uint32_t>(random.below(2)) : 0;
+            geometry::Triangle triangle{};
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                if (k < shared) {
+                    triangle[k] = mesh.triangles.back()[k];
+                    continue;
+                }
+                triangle[k] = static_cast<std::uint32_t>(mesh.vertices.size());
+                mesh.vertices.push_back(point(middle, size));
+            }
+            mesh.triangles.push_back(triangle);
+        }
+        const Crossings all = crossingsOfAllPairs(mesh), now = crossingsOf(mesh);
+        EXPECT_EQ(now.pairs, all.pairs) << "round " << round;
+        EXPECT_EQ(now.triangles, all.triangles) << "round " << round;
+        found += all.pairs;
+    }
+    EXPECT_GT(found, 1000u);
 }
 
 TEST(SelfIntersection, CountsNoTouch) {
