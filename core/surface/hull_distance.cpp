@@ -15,6 +15,7 @@ using geometry::kLanes;
 constexpr int kMostLooks = 32;
 constexpr double kExact = 1e-4;      // of the distance: left between what is proven and what is reached
 constexpr double kResolved = 1e-11;  // [m], the same
+constexpr double kMost = 0.7;        // of the distance: enough where all of it would not do
 
 using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 using LanePlaces = std::int64_t __attribute__((vector_size(kLanes * sizeof(double))));
@@ -239,6 +240,7 @@ PASSUNG_INLINE NearestHulls iterateIn(const HullPair& pair, const Placement& X0,
         if (s.count > 0) {
             if (norm - result.separation <= kExact * norm + kResolved) break;
             if (norm < hopeless) break;  // no plane can do
+            if (norm < enough && hopeless > 0.0 && result.separation > std::max(hopeless, kMost * norm)) break;
         }
         CornerDifference d;
         d.a = held.corner;

@@ -51,8 +51,8 @@ struct NearestHulls {
 /// corners; the corner w of the difference set that lies least far along v either proves that v/|v| separates by
 /// v·w/|v|, or joins the simplex. Every plane is judged by the corners themselves: whatever the iteration does,
 /// `separation` holds.
-/// `from`: a direction to begin with. Ends where `enough` is proven, or a distance of `hopeless` cannot be reached.
-/// rt-safe, bounded.
+/// `from`: a direction to begin with. Ends where `enough` is proven, where a distance of `hopeless` cannot be reached,
+/// or where more than that and most of a distance that is less than `enough` is proven. rt-safe, bounded.
 NearestHulls nearestHulls(const HullPair& pair, const Placement& X, const Vec3& from, double enough,
                           double hopeless) noexcept;
 NearestHulls nearestHulls(const HullPair& pair, const Placement& X0, const Placement& X1, const Vec3& from,

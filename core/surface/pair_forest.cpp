@@ -12,15 +12,22 @@ constexpr std::uint32_t kNone = ClusterPair::kNoPair;
 }  // namespace
 
 PairForest::PairForest(std::size_t most)
-    : pairs_(std::max<std::size_t>(most, 1)), heads_(kBuckets, kNone), counts_(kBuckets, 0) {
+    : pairs_(std::max<std::size_t>(most, 1)),
+      heads_(NormalClass::kCount * kBuckets, kNone),
+      counts_(NormalClass::kCount * kBuckets, 0) {
     restart();
 }
 
 void PairForest::restart() noexcept {
-    std::fill(heads_.begin(), heads_.end(), kNone);
-    std::fill(counts_.begin(), counts_.end(), 0u);
+    for (std::size_t i = 0; i < fresh_; ++i)
+        if (pairs_[i].now == ClusterPair::Now::Asleep) {
+            const std::size_t slot = slotOf(pairs_[i].normals, pairs_[i].key);
+            heads_[slot] = kNone;
+            counts_[slot] = 0;
+        }
     waiting_ = free_ = kNone;
-    next_ = 0;
+    next_.fill(0);
+    travelled_.fill(0.0);
     pairs_[0] = {};
     fresh_ = in_use_ = 1;
     wait(0);
@@ -60,11 +67,10 @@ void PairForest::merge(std::uint32_t parent) noexcept {
     in_use_ -= 2;
 }
 
-std::size_t PairForest::slotOf(double key) const noexcept {
+std::size_t PairForest::slotOf(std::size_t normals, double key) const noexcept {
     const double bucket = std::floor(key / kBucket);
-    const std::int64_t last = next_ + kBuckets - 1;
-    const std::int64_t at = bucket < static_cast<double>(last) ? static_cast<std::int64_t>(bucket) : last;
-    return static_cast<std::size_t>(at % kBuckets);
+    const std::int64_t last = next_[normals] + kBuckets - 1;
+    return slotOf(normals, bucket < static_cast<double>(last) ? static_cast<std::int64_t>(bucket) : last);
 }
 
 void PairForest::putIn(std::uint32_t& head, std::uint32_t pair) noexcept {
@@ -74,12 +80,17 @@ void PairForest::putIn(std::uint32_t& head, std::uint32_t pair) noexcept {
     head = pair;
 }
 
-void PairForest::sleep(std::uint32_t pair, double key) noexcept {
+void PairForest::sleep(std::uint32_t pair, const Vec3& n, double s) noexcept {
+    const std::size_t normals = NormalClass::of(n);
     // Too far for the ring: it is woken early and looked at again.
-    key = std::min(key, (static_cast<double>(next_ + kBuckets) - 0.5) * kBucket);
-    pairs_[pair].now = ClusterPair::Now::Asleep;
-    pairs_[pair].key = key;
-    const std::size_t slot = slotOf(key);
+    const double key =
+        std::min(travelled_[normals] + s, (static_cast<double>(next_[normals] + kBuckets) - 0.5) * kBucket);
+    ClusterPair& asleep = pairs_[pair];
+    asleep.now = ClusterPair::Now::Asleep;
+    asleep.n = n;
+    asleep.normals = static_cast<std::uint16_t>(normals);
+    asleep.key = key;
+    const std::size_t slot = slotOf(normals, key);
     putIn(heads_[slot], pair);
     ++counts_[slot];
 }
@@ -100,7 +111,7 @@ std::uint32_t PairForest::takeWaiting() noexcept {
 void PairForest::takeOut(std::uint32_t pair) noexcept {
     ClusterPair& gone = pairs_[pair];
     const bool asleep = gone.now == ClusterPair::Now::Asleep;
-    const std::size_t slot = asleep ? slotOf(gone.key) : 0;
+    const std::size_t slot = asleep ? slotOf(gone.normals, gone.key) : 0;
     std::uint32_t& head = asleep ? heads_[slot] : waiting_;
     if (gone.before != kNone)
         pairs_[gone.before].after = gone.after;
@@ -110,11 +121,16 @@ void PairForest::takeOut(std::uint32_t pair) noexcept {
     if (asleep) --counts_[slot];
 }
 
-double PairForest::wake(double way, std::size_t most) noexcept {
-    const auto end = static_cast<std::int64_t>(std::floor(way / kBucket)) + 1;
+void PairForest::travel(const PerClass& nearer) noexcept {
+    for (std::size_t c = 0; c < NormalClass::kCount; ++c) travelled_[c] += nearer[c];
+}
+
+std::size_t PairForest::wake(std::size_t normals, double s, std::size_t most) noexcept {
+    const auto end = static_cast<std::int64_t>(std::floor((travelled_[normals] + s) / kBucket)) + 1;
     std::size_t woken = 0;
-    for (bool first = true; next_ < end; ++next_, first = false) {
-        const auto slot = static_cast<std::size_t>(next_ % kBuckets);
+    std::int64_t& next = next_[normals];
+    for (bool first = true; next < end; ++next, first = false) {
+        const std::size_t slot = slotOf(normals, next);
         if (!first && woken + counts_[slot] > most) break;
         woken += counts_[slot];
         while (heads_[slot] != kNone) {
@@ -123,7 +139,7 @@ double PairForest::wake(double way, std::size_t most) noexcept {
             wait(pair);
         }
     }
-    return due();
+    return woken;
 }
 
 }  // namespace passung::surface

@@ -14,6 +14,8 @@ constexpr double kShrink = 0.9;        // of a separation below that: what it ma
 constexpr double kOnTheWay = 0.5;      // of what has to be left at the end: what has to be there in between
 constexpr double kAhead = 1.0;         // of a way: what a plane should hold beyond it
 constexpr double kRounding = 1e-10;    // [m]
+constexpr double kMargin = 1.2;        // of what a look brings nearer, for who may sleep meanwhile
+constexpr double kFading = 0.9;        // of what looks usually bring nearer, from one to the next
 constexpr double kMergeBeyond = 5e-5;  // [m]: nearer pairs stay split
 constexpr double kMergeShare = 0.25;   // of its children's separation, which a pair needs to take their place
 constexpr int kMostAdded = 8;          // rows in a round
@@ -33,17 +35,21 @@ bool SurfaceProxy::isFacePair(std::uint32_t pair) const noexcept {
     return (*held_)[forest_[pair].held].isFace() && (*obstacles_)[forest_[pair].obstacle].isFace();
 }
 
-double SurfaceProxy::sleepBeyond(double way) const noexcept {
-    return std::max(
-        {kSeen, 1.5 * way + gap_ + 2.0 * PairForest::kBucket, forest_.due() - travelled_ + PairForest::kBucket});
+double SurfaceProxy::sleepBeyond(std::size_t normals) const noexcept {
+    return std::max({kSeen, std::max(kMargin * ahead_[normals], usual_[normals]) + gap_ + 2.0 * PairForest::kBucket,
+                     forest_.sureOf(normals) + PairForest::kBucket});
 }
 
-bool SurfaceProxy::settle(double way) noexcept {
-    while (forest_.hasWaiting()) {
-        if (spent()) return false;
-        sort(forest_.takeWaiting(), sleepBeyond(way));
+bool SurfaceProxy::settle() noexcept {
+    if (forest_.hasWaiting()) {
+        double any = 0.0;
+        for (std::size_t c = 0; c < NormalClass::kCount; ++c) any = std::max(any, sleepBeyond(c));
+        while (forest_.hasWaiting()) {
+            if (spent()) return false;
+            sort(forest_.takeWaiting(), any);
+        }
     }
-    settled_ = forest_.due();
+    for (std::size_t c = 0; c < NormalClass::kCount; ++c) settled_[c] = forest_.dueOf(c);
     return true;
 }
 
@@ -52,24 +58,26 @@ void SurfaceProxy::push(std::uint32_t pair, const Vec3& n, double s, bool meets)
     near_[near_count_++] = {n, n, s, s, pair, meets};
 }
 
-/// Finds out whether a pair that waits is far, near, or too near to be one.
-void SurfaceProxy::sort(std::uint32_t at, double asleep_beyond) noexcept {
+/// Finds out whether a pair that waits is far, near, or too near to be one. `any`: a pair farther apart sleeps whatever
+/// its plane is.
+void SurfaceProxy::sort(std::uint32_t at, double any) noexcept {
     const HullPair pair = hulls(at);
     const Vec3 between = P_ * pair.of_held.centre - pair.of_obstacle.centre;
     const double apart = between.norm();
     ++tick_.work;
     const double by_balls = apart - pair.of_held.radius - pair.of_obstacle.radius;
-    if (by_balls >= asleep_beyond) return fallAsleep(at, between / apart, by_balls);
+    if (by_balls >= any) return fallAsleep(at, between / apart, by_balls);
     const Vec3 last = forest_[at].n;
     if (!last.isZero()) {
         const double s = separationAlong(pair, P_, last);
         tick_.work += workOf(pair);
-        if (s >= asleep_beyond) return fallAsleep(at, last, s);
+        if (s >= sleepBeyond(NormalClass::of(last))) return fallAsleep(at, last, s);
     }
     const bool faces = pair.of_held.isFace() && pair.of_obstacle.isFace();
-    const NearestHulls nearest = nearestHulls(pair, P_, last, asleep_beyond, faces ? 0.0 : gap_);
+    const NearestHulls nearest = nearestHulls(pair, P_, last, any, faces ? kRounding : gap_);
     tick_.work += nearest.looks * workOf(pair);
-    if (nearest.separation >= asleep_beyond) return fallAsleep(at, nearest.n, nearest.separation);
+    if (nearest.separation >= sleepBeyond(NormalClass::of(nearest.n)))
+        return fallAsleep(at, nearest.n, nearest.separation);
     if (nearest.separation > (faces ? 0.0 : gap_)) return push(at, nearest.n, nearest.separation, false);
     if (faces) return push(at, nearest.n, 0.0, true);
     const std::uint32_t child = splitPair(at);
@@ -81,18 +89,17 @@ void SurfaceProxy::sort(std::uint32_t at, double asleep_beyond) noexcept {
 /// Puts a pair to sleep, and where its sibling sleeps too and both are far, their parent in their place.
 void SurfaceProxy::fallAsleep(std::uint32_t at, const Vec3& n, double s) noexcept {
     for (;;) {
-        forest_[at].n = n;
-        forest_.sleep(at, travelled_ + s);
+        forest_.sleep(at, n, s);
         const std::uint32_t parent = forest_[at].parent;
         if (parent == ClusterPair::kNoPair || s < kMergeBeyond) return;
         const std::uint32_t first = forest_[parent].child, sibling = at == first ? first + 1 : first;
         if (forest_[sibling].now != ClusterPair::Now::Asleep) return;
-        const double least = std::min(s, forest_[sibling].key - travelled_);
+        const double least = std::min(s, forest_.apart(sibling));
         if (least < kMergeBeyond) return;
         const HullPair pair = hulls(parent);
         tick_.work += workOf(pair);
         const double both = separationAlong(pair, P_, n);
-        if (both < std::max(kMergeShare * least, kMergeBeyond) || travelled_ + both < forest_.due()) return;
+        if (both < std::max(kMergeShare * least, kMergeBeyond) || both <= forest_.sureOf(NormalClass::of(n))) return;
         forest_.merge(parent);
         at = parent;
         s = both;
@@ -304,12 +311,13 @@ void SurfaceProxy::addRow(NearPair& near) noexcept {
 void SurfaceProxy::accept() noexcept {
     X_ = X_next_;
     P_ = P_next_;
-    travelled_ += way_;
+    forest_.travel(nearer_);
     way_in_tick_ += way_;
     chain_[chain_count_++] = X_;
     ++tick_.looks;
     phase_ = Phase::Idle;
-    const double beyond = sleepBeyond(way_);
+    ahead_ = nearer_;
+    for (std::size_t c = 0; c < NormalClass::kCount; ++c) usual_[c] = std::max(nearer_[c], kFading * usual_[c]);
     overlaps_ = false;
     for (std::size_t i = 0; i < near_count_;) {
         NearPair& near = near_[i];
@@ -326,7 +334,7 @@ void SurfaceProxy::accept() noexcept {
                 near.meets = false;
             }
         }
-        if (near.s >= beyond) {
+        if (near.s >= sleepBeyond(NormalClass::of(near.n))) {
             const NearPair gone = near;
             near_[i] = near_[--near_count_];
             fallAsleep(gone.pair, gone.n, gone.s);

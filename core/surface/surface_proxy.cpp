@@ -8,21 +8,23 @@ namespace passung::surface {
 
 namespace {
 
-constexpr double kStill = 1e-8;       // [m]: a motion below this is none
-constexpr double kGoodEnough = 2e-6;  // [m]: what a look leaves is of second order
-constexpr double kGoodShare = 0.03;   // of a tick's way, the same
-constexpr double kLeastTrust = 2e-5;  // [m]
-constexpr double kFastest = 1e-3;     // of the proxy where the hand is slower [m/tick]
-constexpr double kEase = 3e-7;        // of a gap that is too small [m/tick]
-constexpr double kOpening = 1e-8;     // of the gap that is held [m/tick]
-constexpr double kArcShare = 0.5;     // of the least gap: most of an arc's rise
-constexpr double kOpposite = -0.7;    // cosine of the normals of two sides
-constexpr double kStraight = 0.95;    // cosine: they face each other
-constexpr int kMostRefined = 8;       // planes in a tick
-constexpr int kMostGhosts = 3;        // rounds of a look that drop some
-constexpr double kTold = 1e-9;        // [m]: welding and rounding, which the told gap leaves out
-constexpr double kTouches = 1.2;      // gaps: a row no farther away holds the pose
-constexpr double kUnlimited = 0.1;    // [m]: the least gap where nothing is near
+constexpr double kStill = 1e-8;                  // [m]: a motion below this is none
+constexpr double kGoodEnough = 2e-6;             // [m]: what a look leaves is of second order
+constexpr double kGoodShare = 0.03;              // of a tick's way, the same
+constexpr double kLeastTrust = 2e-5;             // [m]
+constexpr double kFastest = 1e-3;                // of the proxy where the hand is slower [m/tick]
+constexpr double kEase = 3e-7;                   // of a gap that is too small [m/tick]
+constexpr double kOpening = 1e-8;                // of the gap that is held [m/tick]
+constexpr std::array kMoreShare{0.1, 0.4, 1.0};  // of a look's way: what it may change by without waking more
+constexpr double kMoreLength = 2e-6;             // [m], beside that
+constexpr double kArcShare = 0.5;                // of the least gap: most of an arc's rise
+constexpr double kOpposite = -0.7;               // cosine of the normals of two sides
+constexpr double kStraight = 0.95;               // cosine: they face each other
+constexpr int kMostRefined = 8;                  // planes in a tick
+constexpr int kMostGhosts = 3;                   // rounds of a look that drop some
+constexpr double kTold = 1e-9;                   // [m]: welding and rounding, which the told gap leaves out
+constexpr double kTouches = 1.2;                 // gaps: a row no farther away holds the pose
+constexpr double kUnlimited = 0.1;               // [m]: the least gap where nothing is near
 constexpr std::size_t kMostWoken = 2500;
 constexpr int kMostIdle = 3;  // ticks of a row that does not hold
 constexpr int kMostRounds = 12;
@@ -60,7 +62,10 @@ void SurfaceProxy::place(const Pose& X_WG) noexcept {
     near_count_ = row_count_ = 0;
     X_ = X_WG;
     P_ = Placement(X_);
-    travelled_ = last_way_ = settled_ = 0.0;
+    last_way_ = 0.0;
+    settled_.fill(0.0);
+    ahead_.fill(0.0);
+    usual_.fill(0.0);
     least_ = 0.0;
     overlaps_ = false;
     X_WH_last_.reset();
@@ -70,7 +75,7 @@ void SurfaceProxy::place(const Pose& X_WG) noexcept {
 void SurfaceProxy::prepare() {
     budget_ = std::numeric_limits<int>::max();
     tick_ = {};
-    settle(0.0);
+    settle();
     budget_ = settings_.budget;
     tell();
 }
@@ -117,6 +122,12 @@ void SurfaceProxy::limit(double most) noexcept {
     }
     turn_ = P_next_.R - P_.R;
     move_ = P_next_.p - P_.p;
+}
+
+/// What the look brings nearer, class by class.
+void SurfaceProxy::measureNearer() noexcept {
+    measureApproach(held_->box(), turn_, move_, nearer_);
+    for (double& nearer : nearer_) nearer = std::min(nearer + arc_, way_);
 }
 
 /// The rows at the pose of now; those that lost their meaning go.
@@ -231,6 +242,8 @@ bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
     }
     if (tick_.looks > 0 && !limited_ && way_ < std::max(kGoodEnough, kGoodShare * way_in_tick_)) return false;
     most_way_ = std::min(room, 1.3 * way_ + 2e-6);
+    measureNearer();
+    wakes_ = 0;
     front_ = at_ = 0;
     front_only_ = false;
     rounds_ = added_ = ghosts_ = 0;
@@ -240,22 +253,35 @@ bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
     return true;
 }
 
+/// How much of the look cannot meet a pair that sleeps; 1: all of it.
+double SurfaceProxy::shareKnown() const noexcept {
+    double share = 1.0;
+    for (std::size_t c = 0; c < NormalClass::kCount; ++c)
+        if (const double room = forest_.sureOf(c) - gap_; room < share * nearer_[c]) share = room / nearer_[c];
+    return share;
+}
+
 /// Lets all pairs wake that the look may reach, or shortens it. False: the budget ended.
 bool SurfaceProxy::wakeAll() noexcept {
+    const double more = kMoreShare[std::min(wakes_, kMoreShare.size() - 1)] * most_way_ + kMoreLength;
+    ++wakes_;
+    for (std::size_t c = 0; c < NormalClass::kCount; ++c) ahead_[c] = std::min(nearer_[c] + more, most_way_);
     for (;;) {
-        if (!settle(most_way_)) return false;
-        const double wanted = travelled_ + most_way_ + gap_;
-        if (forest_.due() >= wanted) break;
-        const double due = forest_.wake(wanted, kMostWoken);
-        if (!settle(most_way_)) return false;
-        const double known = due - travelled_ - gap_;
-        if (known >= most_way_) break;
-        if (known > 0.5 * most_way_ || known > kLeastTrust) {
-            most_way_ = known;
-            break;
+        if (!settle()) return false;
+        if (shareKnown() >= 1.0) break;
+        std::size_t woken = 0;
+        for (std::size_t c = 0; c < NormalClass::kCount; ++c)
+            if (forest_.sureOf(c) < nearer_[c] + gap_)
+                woken += forest_.wake(c, ahead_[c] + gap_, kMostWoken - std::min(woken, kMostWoken));
+        if (!settle()) return false;
+        const double share = shareKnown();
+        if (share >= 1.0) break;
+        if (share > 0.5 || share * way_ > kLeastTrust) {
+            most_way_ = 0.98 * share * way_;
+            limit(most_way_);
+            measureNearer();
         }
     }
-    if (way_ > most_way_) limit(most_way_);
     phase_ = Phase::Checking;
     return true;
 }
@@ -285,6 +311,7 @@ bool SurfaceProxy::tryAgain(bool violated) noexcept {
     if (shorten && !violated) {
         u_ = before;
         limit(most_way_);
+        measureNearer();
         return false;
     }
     if (shorten) {
@@ -302,6 +329,8 @@ bool SurfaceProxy::tryAgain(bool violated) noexcept {
     violated_ = false;
     added_ = 0;
     least_share_ = 1.0;
+    measureNearer();
+    if (shareKnown() < 1.0) phase_ = Phase::Waking;  // it goes another way now
     return true;
 }
 
@@ -317,9 +346,10 @@ bool SurfaceProxy::dropsGhosts() noexcept {
         if (row.push > 0.0) {
             const HullPair pair{*held_, *obstacles_, (*held_)[row.held], (*obstacles_)[row.obstacle]};
             const double by_row = std::max(row.gapAt(X), gap_);
-            const NearestHulls there = nearestHulls(pair, X, row.n, 1.5 * by_row + kLeastGap, 0.0);
+            const double far = 1.5 * by_row + kLeastGap;
+            const NearestHulls there = nearestHulls(pair, X, row.n, far, far);
             tick_.work += 5 * there.looks;
-            ghost = there.separation > 1.5 * by_row + kLeastGap;
+            ghost = there.separation >= far;
         }
         if (!ghost) rows_[kept++] = row;
     }
@@ -336,7 +366,10 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
     trust_ = std::max({kLeastTrust, 1.5 * hand_way, std::min(2.0 * last_way_, kFastest)});
     most_in_tick_ = overlaps_ ? kFastest : std::max(kFastest, 1.5 * hand_way);
     way_in_tick_ = 0.0;
-    if (phase_ == Phase::Idle && !settle(0.0)) tick_.suspended = true;
+    if (phase_ == Phase::Idle) {
+        ahead_.fill(0.0);
+        if (!settle()) tick_.suspended = true;
+    }
     while (!tick_.suspended && static_cast<std::size_t>(tick_.looks) < kMostLooks) {
         if (phase_ == Phase::Idle && !beginLook(X_WH)) break;
         if (phase_ == Phase::Waking && !wakeAll()) tick_.suspended = true;
@@ -378,7 +411,9 @@ void SurfaceProxy::tell() noexcept {
     }
     least_ = least;
     tick_.X_WG = X_;
-    const double proven = std::min({least, kSeen, settled_ - travelled_});
+    double proven = std::min(least, kSeen);
+    for (std::size_t c = 0; c < NormalClass::kCount; ++c)
+        proven = std::min(proven, settled_[c] - forest_.travelledOf(c));
     tick_.gap = std::max(0.0, proven - kTold);
     tick_.meets = overlaps_;
     tick_.rows = static_cast<int>(row_count_);

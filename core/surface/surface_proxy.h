@@ -39,9 +39,10 @@ struct SurfaceTick {
 /// (constrained_motion.h).
 ///
 /// Invariant: at the accepted pose X each pair of faces is covered by one pair of clusters, which is either asleep with
-/// key k, so that its distance is at least k - S, S the way travelled, or near, with a plane (n, s): its hulls are set
-/// apart by s > 0 along n. S grows by the largest displacement of any point of the part. Nothing else is assumed of the
-/// meshes: no inside, no closedness.
+/// key k, so that its distance is at least k - S, or near, with a plane (n, s): its hulls are set apart by s > 0 along
+/// n. S is the way travelled toward planes like the one that set the sleeping pair apart: for each class of normals it
+/// grows by the most that any point of the part came nearer to such a plane (approach.h). Nothing else is assumed of
+/// the meshes: no inside, no closedness.
 ///
 /// A look: rows -> nearest pose to the hand -> all pairs whose key is due wake -> each near pair must be set apart at
 /// the new pose AND on the way there -> those that are not become rows, and it is solved again. A pose is accepted only
@@ -103,9 +104,9 @@ private:
     HullPair hulls(std::uint32_t pair) const noexcept;
     bool isFacePair(std::uint32_t pair) const noexcept;
     bool spent() const noexcept { return tick_.work >= budget_; }
-    double sleepBeyond(double way) const noexcept;
-    bool settle(double way) noexcept;
-    void sort(std::uint32_t at, double asleep_beyond) noexcept;
+    double sleepBeyond(std::size_t normals) const noexcept;
+    bool settle() noexcept;
+    void sort(std::uint32_t at, double any) noexcept;
     void push(std::uint32_t pair, const Vec3& n, double s, bool meets) noexcept;
     void fallAsleep(std::uint32_t at, const Vec3& n, double s) noexcept;
     std::uint32_t splitPair(std::uint32_t at) noexcept;
@@ -128,6 +129,8 @@ private:
     void solve() noexcept;
     motion::Motion wayOut() const noexcept;
     bool beginLook(const Pose& X_WH) noexcept;
+    void measureNearer() noexcept;
+    double shareKnown() const noexcept;
     bool wakeAll() noexcept;
     void bendRows() noexcept;
     bool tryAgain(bool violated) noexcept;
@@ -148,8 +151,7 @@ private:
 
     Pose X_;                    // accepted
     Placement P_;               // the same
-    double travelled_ = 0.0;    // S [m]
-    double settled_ = 0.0;      // keys of all that are not near are no less [m]
+    PerClass settled_{};        // keys of all that are not near are no less [m]
     double gap_, least_ = 0.0;  // held; the least proven at X_ [m]
     double last_way_ = 0.0;     // in the last tick [m]
     bool overlaps_ = false;
@@ -165,8 +167,11 @@ private:
     motion::Motion wanted_ = motion::Motion::Zero(), u_ = motion::Motion::Zero();
     Mat3 turn_ = Mat3::Zero();  // R1 - R0
     Vec3 move_ = Vec3::Zero();  // p1 - p0
+    PerClass nearer_{};         // by the look
+    PerClass ahead_{};          // by what may come of it, and in the next one
+    PerClass usual_{};          // the most of late: who may be due soon stays awake
     double most_way_ = 0.0, way_ = 0.0, arc_ = 0.0, ease_ = 0.0, least_share_ = 1.0;
-    std::size_t at_ = 0;
+    std::size_t at_ = 0, wakes_ = 0;
     bool front_only_ = false, violated_ = false, limited_ = false;
     int added_ = 0, rounds_ = 0, ghosts_ = 0;
 
