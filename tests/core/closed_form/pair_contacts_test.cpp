@@ -114,6 +114,36 @@ TEST_P(ContactsOfShapes, ChangeWithAMotionAsTheirRowsAndCurvaturesSay) {
     EXPECT_LT(quantile(second, 0.9), 2e-2);
 }
 
+TEST_P(ContactsOfShapes, OverlapByAsMuchAsTheDeepestOfThemForASearchThatLooksAtFewOnly) {
+    // Truth: the deepest of all contacts, found anew at each pose, to the bit; on slow and fast ways.
+    const auto held = solidOf(GetParam().held), obstacle = solidOf(GetParam().obstacle);
+    Random random(6);
+    const Pose X_WO{randomRotation(random, 3.0), randomVector(random, Vec3::Constant(0.01))};
+    const SolidPair pair{&*held, &*obstacle, X_WO, kRho};
+    int overlaps = 0;
+    for (const double step : {2e-5, 5e-4}) {
+        ContactSearch search(pair);
+        Vec3 p = GetParam().start;
+        Quat q = Quat::Identity();
+        for (int i = 0; i < 2000; ++i) {
+            if (i % 100 == 0) {
+                p = GetParam().start + randomVector(random, GetParam().amplitude);
+                q = randomRotation(random, GetParam().tilt);
+            }
+            p += randomVector(random, Vec3::Constant(step));
+            q = (randomRotation(random, 40.0 * step) * q).normalized();
+            const Pose X = X_WO * Pose{q, p};
+            PairContacts all;
+            ContactSearch(pair).find(X, 0.0, all);
+            const ContactSearch::Overlap found = search.overlapAt(X);
+            ASSERT_EQ(found.depth, overlapOf(all)) << i;
+            ASSERT_LE(found.full, all.full());
+            overlaps += found.depth > 0.0 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(overlaps, 200);
+}
+
 TEST_P(ContactsOfShapes, AreTheSameForASearchThatRemembersWhatIsFar) {
     // Truth: invariant.
     const auto held = solidOf(GetParam().held), obstacle = solidOf(GetParam().obstacle);
