@@ -114,6 +114,31 @@ TEST_P(ContactsOfShapes, ChangeWithAMotionAsTheirRowsAndCurvaturesSay) {
     EXPECT_LT(quantile(second, 0.9), 2e-2);
 }
 
+TEST_P(ContactsOfShapes, HaveTheirEdgesNoDeeperThanTheirBounds) {
+    // Truth: the lump's function itself at dense points of the edge.
+    const auto held = solidOf(GetParam().held), obstacle = solidOf(GetParam().obstacle);
+    Random random(7);
+    for (int tried = 0; tried < 300; ++tried) {
+        const Pose X{randomRotation(random, GetParam().tilt),
+                     GetParam().start + randomVector(random, GetParam().amplitude)};
+        for (Curve edge : held->edges) {
+            edge.centre = X * edge.centre;
+            edge.e1 = X.q * edge.e1;
+            edge.e2 = X.q * edge.e2;
+            for (const Lump& lump : obstacle->lumps) {
+                Touches touches;
+                double closer = -1.0;
+                const double bound = searchEdge(edge, lump, 1e-3, touches, &closer);
+                double least = 1.0;
+                for (int i = 0; i <= 400; ++i)
+                    least = std::min(least, valueOf(lump, pointOf(edge, edge.end * (i / 200.0 - 1.0))));
+                ASSERT_LE(bound, least + 1e-12);
+                ASSERT_LE(closer, least + 1e-12);
+            }
+        }
+    }
+}
+
 TEST_P(ContactsOfShapes, OverlapByAsMuchAsTheDeepestOfThemForASearchThatLooksAtFewOnly) {
     // Truth: the deepest of all contacts, found anew at each pose, to the bit; on slow and fast ways.
     const auto held = solidOf(GetParam().held), obstacle = solidOf(GetParam().obstacle);
@@ -125,7 +150,7 @@ TEST_P(ContactsOfShapes, OverlapByAsMuchAsTheDeepestOfThemForASearchThatLooksAtF
         ContactSearch search(pair);
         Vec3 p = GetParam().start;
         Quat q = Quat::Identity();
-        for (int i = 0; i < 2000; ++i) {
+        for (int i = 0; i < 500; ++i) {
             if (i % 100 == 0) {
                 p = GetParam().start + randomVector(random, GetParam().amplitude);
                 q = randomRotation(random, GetParam().tilt);
@@ -141,7 +166,7 @@ TEST_P(ContactsOfShapes, OverlapByAsMuchAsTheDeepestOfThemForASearchThatLooksAtF
             overlaps += found.depth > 0.0 ? 1 : 0;
         }
     }
-    EXPECT_GT(overlaps, 200);
+    EXPECT_GT(overlaps, 50);
 }
 
 TEST_P(ContactsOfShapes, AreTheSameForASearchThatRemembersWhatIsFar) {
