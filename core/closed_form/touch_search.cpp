@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <span>
 
 #include "core/closed_form/circle_samples.h"
@@ -177,6 +178,29 @@ Touch minimumBetween(const Curve& line, const Lump& lump, const Highest& highest
     return {.kind = Touch::Kind::Fixed, .t = here.t, .gap = here.value, .a = placeOf(lump, *here.face)};
 }
 
+/// Between two samples that both fall or both rise: a kink from the one's face, which turned on the way, to the
+/// other's.
+std::optional<Touch> kinkBetween(const Curve& line, const Lump& lump, const Sample& low, const Sample& high) noexcept {
+    if (low.face == high.face || (low.slope < 0.0) != (high.slope < 0.0)) return std::nullopt;
+    const bool turned =
+        low.slope < 0.0 ? slopeOn(*high.face, line, low.t) > 0.0 : slopeOn(*low.face, line, high.t) < 0.0;
+    if (!turned) return std::nullopt;
+    const double t = zeroBetween(low.t, high.t, valueOf(*high.face, low.p) - low.value,
+                                 high.value - valueOf(*low.face, high.p), [&](double at) {
+                                     const Vec3 p = pointOf(line, at);
+                                     return valueOf(*high.face, p) - valueOf(*low.face, p);
+                                 });
+    const double falls = slopeOn(*low.face, line, t), rises = slopeOn(*high.face, line, t);
+    const double gap = valueOf(*low.face, pointOf(line, t));
+    if (!(falls < 0.0 && rises > 0.0) || valueOf(lump, pointOf(line, t)) > gap + 1e-15) return std::nullopt;
+    return Touch{.kind = Touch::Kind::Kink,
+                 .t = t,
+                 .gap = gap,
+                 .a = placeOf(lump, *low.face),
+                 .b = placeOf(lump, *high.face),
+                 .share = rises / (rises - falls)};
+}
+
 bool isBeside(const Touches& touches, const Curve& line, double t) noexcept {
     for (const Touch& touch : touches.all()) {
         if (apartOn(line, touch.t, t) < (touch.kind == Touch::Kind::Kink ? kBesideKink : kSameTouch)) return true;
@@ -278,7 +302,10 @@ double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& to
         const double bound = 0.5 * (low.value + high.value - farthest);
         least = std::min(least, bound);
         if (bound > reach) continue;
-        if (!(low.slope < 0.0 && high.slope >= 0.0)) continue;
+        if (!(low.slope < 0.0 && high.slope >= 0.0)) {
+            if (const auto kink = kinkBetween(edge, lump, low, high); kink && kink->gap <= reach) touches.add(*kink);
+            continue;
+        }
         const Touch touch = minimumBetween(edge, lump, highest, low, high);
         if (touch.gap <= reach) touches.add(touch);
     }

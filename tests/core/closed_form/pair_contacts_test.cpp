@@ -189,6 +189,24 @@ TEST_P(ContactsOfShapes, AreTheSameForASearchThatRemembersWhatIsFar) {
     }
 }
 
+TEST(ContactsOfRims, AreTwoWhereARimCrossesTwoFacesBetweenTwoSamples) {
+    // Truth: the lump's function at dense points of the mouth's rim. A tick of the shipped study: the peg's tip stands
+    // on the mouth's rim, which meets its chamfer 11 degrees further, both within 15 degrees.
+    const auto peg = solidOf(shape::Peg{.02, .05, .0005});
+    const auto plate = solidOf(shape::BorePlate{.06, .06, .03, .0202, .025, .0005});
+    const Pose X{
+        Quat(0.9998910427093506, -0.010717242024838924, 0.01015303935855627, -1.4173131603456568e-05).normalized(),
+        Vec3(-0.0007147965952754021, -0.0008499546092934906, -0.0002800616784952581)};
+    double deepest = 0.0;
+    for (int i = 0; i < 100'000; ++i)
+        deepest =
+            std::min(deepest, valueOf(peg->lumps[0], X.inverse() * pointOf(plate->edges[1], 2e-5 * M_PI * i - M_PI)));
+    PairContacts found;
+    ContactSearch({&*peg, &*plate, {}, kRho}).find(X, 1e-3, found);
+    EXPECT_LT(deepest, -3e-6);
+    EXPECT_NEAR(-overlapOf(found), deepest, 2e-8);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, ContactsOfShapes, testing::ValuesIn(shapePairs()), nameOfPair);
 
 }  // namespace
