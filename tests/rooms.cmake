@@ -22,7 +22,7 @@ set(rooms
   "core/scene          | core/base core/geometry core/import core/shape core/field core/shell"
   "core/contact        | core/base ${model_rooms}"
   "core/motion         | core/base ${model_rooms} core/contact"
-  "core/closed_form    | core/base core/geometry core/import core/shape core/motion"
+  "core/closed_form    | core/base core/geometry core/import core/shape core/field core/motion"
   "core/surface        | core/base ${model_rooms} core/contact core/motion"
   "core/tick           | ${contact_rooms}"
   "core/query          | ${contact_rooms}"

@@ -12,7 +12,8 @@
 namespace passung::truth {
 namespace {
 
-constexpr double kAside = 1e-9;  // [m] outside a plane: what lies there does not count as in the solid
+constexpr double kAside = 1e-9;      // [m] outside a plane: what lies there does not count as in the solid
+constexpr double kSlender = 1000.0;  // times as long as wide: is cut across
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 double radiusOf(std::span<const Vec3> corners, const Vec3& middle) {
@@ -77,34 +78,36 @@ std::array<Polygon, 2> halves(const Polygon& whole) {
     return parts;
 }
 
-/// A branch of a surface's tree, or a piece of one of its triangles in the frame of the solid.
+/// A branch of a surface's tree, a flat piece in the frame of the solid, or a turned one.
 struct Piece {
+    enum class Kind : std::uint8_t { Node, Flat, Turned };
     double bound;      // no point of it is deeper [m]
-    std::uint32_t at;  // node of the tree, or place in Polygons
+    std::uint32_t at;  // node of the tree, or place among those that wait
     bool b_in_a;       // whose surface
-    bool is_node;
+    Kind kind;
 };
 
-/// Pieces of triangles that wait. What one leaves the next takes.
-class Polygons {
+/// Pieces that wait. What one leaves the next takes.
+template <class Kept>
+class Waiting {
 public:
-    std::uint32_t keep(const Polygon& polygon) {
+    std::uint32_t keep(const Kept& piece) {
         if (free_.empty()) {
-            kept_.push_back(polygon);
+            kept_.push_back(piece);
             return static_cast<std::uint32_t>(kept_.size() - 1);
         }
         const std::uint32_t at = free_.back();
         free_.pop_back();
-        kept_[at] = polygon;
+        kept_[at] = piece;
         return at;
     }
-    Polygon take(std::uint32_t at) {
+    Kept take(std::uint32_t at) {
         free_.push_back(at);
         return kept_[at];
     }
 
 private:
-    std::vector<Polygon> kept_;
+    std::vector<Kept> kept_;
     std::vector<std::uint32_t> free_;
 };
 
@@ -114,6 +117,7 @@ struct Direction {
     const OverlapBody* surface;
     Pose X_SolidSurface, X_WSolid;
     Mat3 R_SolidSurface = X_SolidSurface.q.toRotationMatrix();  // for many points faster than the quaternion
+    AxialView seen{X_SolidSurface};
 
     Vec3 inSolid(const Vec3& p_Surface) const { return R_SolidSurface * p_Surface + X_SolidSurface.p; }
     /// The corners of a box (TriangleBoxes::Node::hull).
@@ -135,7 +139,7 @@ public:
 
     Overlap run() {
         for (std::size_t i = 0; i < 2; ++i)
-            if (directions_[i].solid->hasInside()) addNode(i == 1, 0);
+            if (directions_[i].solid->hasInside()) addSurface(i == 1);
         while (!waiting_.empty() && waiting_.top().bound > (1.0 + search_.share) * found_.depth + search_.tolerance &&
                found_.pieces < search_.most_pieces) {
             const Piece piece = waiting_.top();
@@ -149,9 +153,23 @@ public:
 private:
     const Direction& of(bool b_in_a) const { return directions_[b_in_a ? 1 : 0]; }
 
+    /// The exact faces of a shape in a shape; else the triangles.
+    void addSurface(bool b_in_a) {
+        const Direction& way = of(b_in_a);
+        const SurfacePieces& pieces = way.surface->pieces();
+        if (!way.solid->isShape() || pieces.empty()) return addNode(b_in_a, 0);
+        for (const TurnedPiece& piece : pieces.turned) addTurned(b_in_a, judged(way, piece));
+        for (const FlatPiece& piece : pieces.flat) {
+            Polygon polygon;
+            for (const Vec3& corner : piece) polygon.addFresh(way.inSolid(corner));
+            addPolygon(b_in_a, polygon);
+        }
+    }
+
     void expand(const Piece& piece) {
         const Direction& way = of(piece.b_in_a);
-        if (!piece.is_node) {
+        if (piece.kind == Piece::Kind::Turned) return expandTurned(piece.b_in_a, turned_.take(piece.at));
+        if (piece.kind == Piece::Kind::Flat) {
             for (const Polygon& half : halves(polygons_.take(piece.at))) addPolygon(piece.b_in_a, half);
             return;
         }
@@ -182,7 +200,7 @@ private:
         if (bound > enough && isShallow(way, index, middle, enough))
             left_out_ = std::max(left_out_, search_.ignore);
         else if (isOpen(bound))
-            waiting_.push({bound, index, b_in_a, true});
+            waiting_.push({bound, index, b_in_a, Piece::Kind::Node});
     }
 
     /// Does the hull of the vertices themselves, tighter than any box, prove it?
@@ -211,9 +229,54 @@ private:
         if (phi >= radiusOf(piece.span(), middle)) return;
         const double bound = std::min(at_once, way.solid->deepestOverPiece(piece.span(), middle, phi));
         if (way.solid->isOutside(piece.span(), phi) || !isOpen(bound)) return;
-        waiting_.push({bound, polygons_.keep(piece), b_in_a, false});
+        waiting_.push({bound, polygons_.keep(piece), b_in_a, Piece::Kind::Flat});
         for (std::size_t i = 0; i < piece.count; ++i)
             if (piece.isFresh(i)) note(way, piece.corners[i], way.solid->signedDistance(piece.corners[i]));
+    }
+
+    struct Judged {
+        TurnedPiece piece;
+        double bound;
+    };
+
+    Judged judged(const Direction& way, const TurnedPiece& piece) {
+        ++found_.pieces;
+        const double bound = way.solid->deepestOver(way.seen.extentOf(piece));
+        if (!(bound > std::max(found_.depth, search_.ignore)) || !piece.hasHull()) return {piece, bound};
+        std::array<Vec3, 8> corners = piece.corners();
+        for (Vec3& corner : corners) corner = way.inSolid(corner);
+        return {piece, std::min(bound, way.solid->deepestAtOnce(corners, way.inSolid(piece.middle())))};
+    }
+
+    /// In two by whichever cut leaves less to be looked at: a long piece along a bore may well stay long.
+    void expandTurned(bool b_in_a, const TurnedPiece& piece) {
+        const Direction& way = of(b_in_a);
+        const auto bothOf = [&](const std::array<TurnedPiece, 2>& halves) {
+            return std::array{judged(way, halves[0]), judged(way, halves[1])};
+        };
+        const double around = piece.lengthAround(), along = piece.lengthAlong();
+        std::array<Judged, 2> both = bothOf(around > along ? piece.halvesAround() : piece.halvesAlong());
+        if (std::min(around, along) * kSlender > std::max(around, along)) {
+            const auto others = bothOf(around > along ? piece.halvesAlong() : piece.halvesAround());
+            if (leftToSee(others) < leftToSee(both)) both = others;
+        }
+        for (const Judged& half : both) addTurned(b_in_a, half);
+    }
+    double leftToSee(const std::array<Judged, 2>& both) const {
+        const double enough = std::max(found_.depth, search_.ignore);
+        double left = 0.0;
+        for (const Judged& half : both) left += std::max(0.0, half.bound - enough);
+        return left;
+    }
+
+    void addTurned(bool b_in_a, const Judged& judged) {
+        const Direction& way = of(b_in_a);
+        if (!isOpen(judged.bound)) return;
+        const Vec3 middle = way.inSolid(judged.piece.middle());
+        const double phi = way.solid->signedDistance(middle);
+        note(way, middle, phi);
+        const double bound = std::min(judged.bound, judged.piece.radius() - phi);
+        if (isOpen(bound)) waiting_.push({bound, turned_.keep(judged.piece), b_in_a, Piece::Kind::Turned});
     }
 
     /// What is no deeper than what is found, or need not be told, is left out.
@@ -232,7 +295,8 @@ private:
     double left_out_ = 0.0;
     std::vector<Vec3> placed_;  // vertices of a node in the solid's frame
     std::priority_queue<Piece, std::vector<Piece>, Later> waiting_;
-    Polygons polygons_;
+    Waiting<Polygon> polygons_;
+    Waiting<TurnedPiece> turned_;
 };
 
 struct Meeting {
@@ -261,10 +325,18 @@ struct Meeting {
 
 OverlapBody::OverlapBody(const shape::Shape& shape, double chord_error)
     : shape_(std::make_unique<const shape::Shape>(shape)),
-      surface_(std::make_unique<const TriangleBoxes>(shape::tessellate(shape, chord_error))),
+      pieces_(SurfacePieces::of(shape)),
+      asked_chord_(chord_error),
       chord_error_(shape::chordError(shape, chord_error)) {}
 
 OverlapBody::OverlapBody(const geometry::TriangleMesh& mesh) : surface_(std::make_unique<const TriangleBoxes>(mesh)) {}
+
+const TriangleBoxes& OverlapBody::surface() const {
+    std::call_once(made_, [this] {
+        if (!surface_) surface_ = std::make_unique<const TriangleBoxes>(shape::tessellate(*shape_, asked_chord_));
+    });
+    return *surface_;
+}
 
 bool OverlapBody::hasInside() const { return shape_ == nullptr || !std::holds_alternative<shape::Sheet>(*shape_); }
 
@@ -273,6 +345,8 @@ double OverlapBody::signedDistance(const Vec3& p) const {
     const double distance = surface_->nearest(p).distance;
     return surface_->contains(p) ? -distance : distance;
 }
+
+double OverlapBody::deepestOver(const AxialExtent& extent) const { return truth::deepestOver(*shape_, extent); }
 
 double OverlapBody::deepestAtOnce(std::span<const Vec3> corners, const Vec3& middle) const {
     return shape_ != nullptr ? truth::deepestOver(*shape_, corners, middle) : kUnknown;

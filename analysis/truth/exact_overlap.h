@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "analysis/truth/surface_pieces.h"
 #include "analysis/truth/triangle_boxes.h"
 #include "core/base/types.h"
 #include "core/geometry/mesh.h"
@@ -43,7 +45,11 @@ public:
     /// @pre at least one triangle, finite vertices.
     explicit OverlapBody(const geometry::TriangleMesh& mesh);
 
-    const TriangleBoxes& surface() const { return *surface_; }
+    /// Those of a shape are made when first asked for. Thread-safe.
+    const TriangleBoxes& surface() const;
+    /// Empty for a mesh, and for kinds of shapes that have none.
+    const SurfacePieces& pieces() const { return pieces_; }
+    bool isShape() const { return shape_ != nullptr; }
     double chordError() const { return chord_error_; }  // as reached [m]
     bool hasInside() const;
     /// Positive outside [m]. @pre hasInside().
@@ -51,6 +57,8 @@ public:
     /// No point of the hull of `corners` is deeper than this [m]; `middle` near its middle. Of a mesh nothing is known
     /// at once: infinite.
     double deepestAtOnce(std::span<const Vec3> corners, const Vec3& middle) const;
+    /// Of whatever has this extent about the z axis of the shape. @pre isShape().
+    double deepestOver(const AxialExtent& extent) const;
     /// The same with `phi`, the signed distance of the middle.
     double deepestOver(std::span<const Vec3> corners, const Vec3& middle, double phi) const;
     /// Is the hull of `corners` proven to be no deeper than `enough` [m]? Of a mesh never: that would take too long.
@@ -64,8 +72,10 @@ private:
     bool isMetBy(std::span<const Vec3> piece) const;
 
     std::unique_ptr<const shape::Shape> shape_;  // none: a mesh
-    std::unique_ptr<const TriangleBoxes> surface_;
-    double chord_error_ = 0.0;
+    SurfacePieces pieces_;
+    double asked_chord_ = 0.0, chord_error_ = 0.0;  // [m]
+    mutable std::once_flag made_;
+    mutable std::unique_ptr<const TriangleBoxes> surface_;
 };
 
 /// The overlap of A and B, by branch and bound over both surfaces, the deepest possible piece first: of each piece the

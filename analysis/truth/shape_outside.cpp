@@ -207,7 +207,35 @@ void add(const KeyedBorePlate& plate, Bound& bound) {
     addSlotMouth(0.0, reach, half_key, plate.chamfer, true, bound);
 }
 
+double deepest(const Cylinder& c, const AxialExtent& e) {
+    return std::min(0.5 * c.diameter - e.least_radius, 0.5 * c.length - std::max(e.least_height, -e.most_height));
+}
+
+double deepest(const Peg& peg, const AxialExtent& e) {
+    const double radius = 0.5 * peg.diameter;
+    return std::min({radius - e.least_radius, e.most_height, peg.length - e.least_height,
+                     kHalfRoot * (radius - peg.chamfer - e.least_slope)});
+}
+
+/// Above the plate, below it, in its bore and between the slopes of its mouth.
+double deepest(const BorePlate& plate, const AxialExtent& e) {
+    const double radius = 0.5 * plate.bore_diameter;
+    const double of_bore = lengthOf(positive(e.most_radius - radius), positive(floorOf(plate) - e.least_height));
+    const double lift = positive(-(e.least_height + plate.chamfer));
+    const double over = 0.5 * positive(e.most_slope - radius - plate.chamfer);
+    return std::min({of_bore, lengthOf(over, lift + over), -e.least_height, plate.height + e.most_height});
+}
+
+template <class Other>
+double deepest(const Other&, const AxialExtent&) {
+    return std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
+
+double deepestOver(const Shape& shape, const AxialExtent& extent) {
+    return positive(std::visit([&](const auto& s) { return deepest(s, extent); }, shape));
+}
 
 double deepestOver(const Shape& shape, std::span<const Vec3> corners, const Vec3& middle, double enough) {
     Bound bound(corners, middle, enough);

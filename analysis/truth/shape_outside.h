@@ -3,6 +3,7 @@
 #include <limits>
 #include <span>
 
+#include "analysis/truth/surface_pieces.h"
 #include "core/shape/shape.h"
 
 namespace passung::truth {
@@ -17,5 +18,9 @@ namespace passung::truth {
 ///   `enough`: where no bound is below it the answer is this, and sooner found.
 double deepestOver(const shape::Shape& shape, std::span<const Vec3> corners, const Vec3& middle,
                    double enough = std::numeric_limits<double>::infinity());
+
+/// The same of whatever has this extent about the z axis of the shape, by the same convex sets as far as they are
+/// turned about it; infinite where the shape has none.
+double deepestOver(const shape::Shape& shape, const AxialExtent& extent);
 
 }  // namespace passung::truth

@@ -33,9 +33,13 @@ struct LineView {
     double sign;  // of what a motion of the held part does to the gap: 1 if the line moves, -1 if the lump does
 };
 
-LineView viewOf(const SolidPair& pair, const Pose& X_WH, const TouchName& name) noexcept {
+const Curve& lineOf(const SolidPair& pair, const TouchName& name) noexcept {
     const SmoothSolid& lines = name.of_held ? *pair.held : *pair.obstacle;
-    const Curve& line = name.core ? lines.cores[name.line] : lines.edges[name.line];
+    return name.core ? lines.cores[name.line] : lines.edges[name.line];
+}
+
+LineView viewOf(const SolidPair& pair, const Pose& X_WH, const TouchName& name) noexcept {
+    const Curve& line = lineOf(pair, name);
     if (name.of_held) {
         const Pose X_OH = pair.X_WO.inverse() * X_WH;
         return {pair.X_WO.q.toRotationMatrix(), pair.X_WO.p, moved(X_OH, line), X_OH.p, 1.0};
@@ -140,6 +144,26 @@ double overlapOf(const PairContacts& contacts) noexcept {
     return most;
 }
 
+struct PlacedPair {
+    PlacedPair(const SolidPair& of, const Pose& X_WHeld) noexcept
+        : pair(of),
+          X_WH(X_WHeld),
+          X_OH(of.X_WO.inverse() * X_WHeld),
+          X_HO(X_WHeld.inverse() * of.X_WO),
+          R_WH(X_WHeld.q.toRotationMatrix()),
+          R_WO(of.X_WO.q.toRotationMatrix()) {}
+
+    LineView view(const TouchName& name) const noexcept {
+        const Curve& line = lineOf(pair, name);
+        if (name.of_held) return {R_WO, pair.X_WO.p, moved(X_OH, line), X_OH.p, 1.0};
+        return {R_WH, X_WH.p, moved(X_HO, line), Vec3::Zero(), -1.0};
+    }
+
+    const SolidPair& pair;
+    Pose X_WH, X_OH, X_HO;
+    Mat3 R_WH, R_WO;
+};
+
 ContactSearch::ContactSearch(const SolidPair& pair) : pair_(pair) {
     addMeetings(true);
     addMeetings(false);
@@ -153,21 +177,55 @@ void ContactSearch::addMeetings(bool of_held) {
         for (std::size_t line = 0; line < count; ++line)
             for (std::size_t lump = 0; lump < lumps.lumps.size(); ++lump)
                 meetings_.push_back(
-                    {.name = {of_held, core, static_cast<std::uint16_t>(line), static_cast<std::uint16_t>(lump)}});
+                    {.name = {of_held, core, static_cast<std::uint16_t>(line), static_cast<std::uint16_t>(lump)},
+                     .touches = !core || canTouch(lines.cores[line], lumps.lumps[lump])});
     }
 }
 
-double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept {
+void ContactSearch::moveTo(const Pose& X_WH) noexcept {
     way_ += (X_WH.p - X_last_.p).norm();
     turn_ += rotationVector(X_WH.q * X_last_.q.conjugate()).norm();
     X_last_ = X_WH;
+}
+
+double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept {
+    moveTo(X_WH);
     contacts.clear();
+    const PlacedPair placed(pair_, X_WH);
     double least = std::numeric_limits<double>::infinity();
     for (Meeting& meeting : meetings_) {
-        if (!(boundOf(meeting) > reach)) look(X_WH, reach, meeting, contacts);
+        if (!(boundOf(meeting) > reach)) {
+            Touches touches;
+            look(placed, reach, false, meeting, touches, [&](const Contact& contact) { contacts.add(contact); });
+            if (touches.full()) contacts.setFull();
+        }
         least = std::min(least, boundOf(meeting));
     }
     return least;
+}
+
+/// Begins with the meeting that was the deepest before: few others have to be looked at then.
+ContactSearch::Overlap ContactSearch::overlapAt(const Pose& X_WH) noexcept {
+    constexpr double kRounding = 1e-12;  // [m] between a touch's gap and its contact's
+    moveTo(X_WH);
+    const PlacedPair placed(pair_, X_WH);
+    Overlap overlap;
+    const auto lookAt = [&](std::size_t at) {
+        const double reach = std::min(0.0, kRounding - overlap.depth);
+        if (!meetings_[at].touches || boundOf(meetings_[at]) > reach) return;
+        Touches touches;
+        look(placed, reach, true, meetings_[at], touches, [&](const Contact& contact) {
+            if (!(-contact.gap > overlap.depth)) return;
+            overlap.depth = -contact.gap;
+            deepest_ = at;
+        });
+        overlap.full = overlap.full || touches.full();
+    };
+    const std::size_t first = deepest_;
+    if (first < meetings_.size()) lookAt(first);
+    for (std::size_t at = 0; at < meetings_.size(); ++at)
+        if (at != first) lookAt(at);
+    return overlap;
 }
 
 /// A function with a gradient of length 1 changes by no more than its point moves.
@@ -176,18 +234,20 @@ double ContactSearch::boundOf(const Meeting& meeting) const noexcept {
     return meeting.bound - way - turn * (meeting.lever + way);
 }
 
-void ContactSearch::look(const Pose& X_WH, double reach, Meeting& meeting, PairContacts& contacts) noexcept {
+template <class Take>
+void ContactSearch::look(const PlacedPair& placed, double reach, bool closely, Meeting& meeting, Touches& touches,
+                         Take take) noexcept {
     const TouchName& name = meeting.name;
-    const LineView view = viewOf(pair_, X_WH, name);
+    const LineView view = placed.view(name);
     const Lump& lump = lumpOf(pair_, name);
-    Touches touches;
-    meeting.bound =
-        name.core ? searchCore(view.line, lump, reach, touches) : searchEdge(view.line, lump, reach, touches);
+    double closer = -std::numeric_limits<double>::infinity();
+    meeting.bound = name.core ? searchCore(view.line, lump, reach, touches)
+                              : searchEdge(view.line, lump, reach, touches, closely ? &closer : nullptr);
+    meeting.bound = std::max(meeting.bound, closer);
     meeting.lever = (view.line.centre - view.origin).norm() + view.line.extent();
     meeting.way = way_;
     meeting.turn = turn_;
-    for (const Touch& touch : touches.all()) contacts.add(contactOf(pair_, view, name, touch));
-    if (touches.full()) contacts.setFull();
+    for (const Touch& touch : touches.all()) take(contactOf(pair_, view, name, touch));
 }
 
 Contact atPose(const SolidPair& pair, const Pose& X_WH, const Contact& contact) noexcept {

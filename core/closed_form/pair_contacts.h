@@ -43,6 +43,9 @@ struct SolidPair {
     double metric_radius;  // ρ [m], > 0
 };
 
+/// A pair at a pose, with what follows from that for all of its lines.
+struct PlacedPair;
+
 /// Finds a pair's contacts at one pose after the other. What it knows of a line and a lump that are far from each other
 /// saves looks at them until the held part has moved so far that they could touch.
 class ContactSearch {
@@ -56,21 +59,35 @@ public:
     /// parts touch [m], proven where it is > 0. rt-safe.
     double find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept;
 
+    struct Overlap {
+        double depth = 0.0;  // the most that any contact overlaps [m], ≥ 0
+        bool full = false;   // more contacts than there is room for: it may be deeper
+    };
+    /// That of all contacts that find() has at this pose, of which only those are looked for that can be deeper than
+    /// what is found already. rt-safe.
+    Overlap overlapAt(const Pose& X_WH) noexcept;
+
 private:
     /// A line and a lump of the other part.
     struct Meeting {
         TouchName name;
+        bool touches = true;           // false: of no contact, of the bound alone
         double bound = 0.0;            // of the gap, when it was looked at last [m]
         double lever = 0.0;            // of the line's points about the held part's origin, then [m]
         double way = 0.0, turn = 0.0;  // of the held part, until then
     };
 
     void addMeetings(bool of_held);
+    void moveTo(const Pose& X_WH) noexcept;
     double boundOf(const Meeting& meeting) const noexcept;
-    void look(const Pose& X_WH, double reach, Meeting& meeting, PairContacts& contacts) noexcept;
+    /// `closely`: for a bound that saves more looks than it costs where few are near.
+    template <class Take>
+    void look(const PlacedPair& placed, double reach, bool closely, Meeting& meeting, Touches& touches,
+              Take take) noexcept;
 
     SolidPair pair_;
     std::vector<Meeting> meetings_;
+    std::size_t deepest_ = 0;  // meeting of the last overlap
     Pose X_last_;
     double way_ = 0.0, turn_ = 0.0;  // that the held part has made [m], [rad]
 };

@@ -105,8 +105,8 @@ void PoseSolver::remember(const Pose& X, const PoseMemory& memory) noexcept {
     }
 }
 
-/// B = L Lᵀ.
-MotionMatrix PoseSolver::factor(const Pose& X) const noexcept {
+/// B = L Lᵀ. False: it is 1, nothing bends it.
+bool PoseSolver::factor(const Pose& X, MotionMatrix& L) const noexcept {
     MotionMatrix B = MotionMatrix::Identity();
     bool bent = false;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -115,14 +115,18 @@ MotionMatrix PoseSolver::factor(const Pose& X) const noexcept {
         B -= from.push * curvatureOf(pair(from.pair), X, from.contact, rows_[i].slides);
         bent = true;
     }
-    if (!bent) return B;
+    L = B;
+    if (!bent) return false;
     Eigen::LLT<MotionMatrix> chol(B);
-    if (chol.info() == Eigen::Success && chol.matrixLLT().diagonal().cwiseAbs2().minCoeff() > kLeastStiffness)
-        return chol.matrixL();
+    if (chol.info() == Eigen::Success && chol.matrixLLT().diagonal().cwiseAbs2().minCoeff() > kLeastStiffness) {
+        L = chol.matrixL();
+        return true;
+    }
     Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(B);
     const motion::Motion values = eigen.eigenvalues().cwiseMax(kLeastStiffness);
     B = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
-    return Eigen::LLT<MotionMatrix>(B).matrixL();
+    L = Eigen::LLT<MotionMatrix>(B).matrixL();
+    return true;
 }
 
 bool PoseSolver::solveRows(const motion::Motion& wanted, motion::ActiveSet& active, motion::Motion& y) noexcept {
@@ -147,11 +151,17 @@ bool PoseSolver::solveRows(const motion::Motion& wanted, motion::ActiveSet& acti
 
 /// The motion that the rows leave of `wanted`; what holds it is held from now on.
 motion::Motion PoseSolver::step(const Pose& X, const motion::Motion& wanted, PoseMemory& memory) noexcept {
-    const MotionMatrix L = factor(X);
+    MotionMatrix L;
+    const bool bent = factor(X, L);
     const auto lower = L.triangularView<Eigen::Lower>();
-    const motion::Motion there = lower.solve(wanted);
+    // L⁻¹ v. Of the unit matrix that is v to the bit, but for the signs of zeros.
+    const auto solved = [&](const motion::Motion& v) -> motion::Motion {
+        if (!bent && (v.array() != 0.0).all()) return v;
+        return lower.solve(v);
+    };
+    const motion::Motion there = solved(wanted);
     for (std::size_t i = 0; i < count_; ++i) {
-        const motion::Motion a = lower.solve(rows_[i].from.contact.a);
+        const motion::Motion a = solved(rows_[i].from.contact.a);
         const double length = a.norm();
         prepared_[i].a = a / length;
         prepared_[i].length = length;

@@ -84,7 +84,7 @@ private:
     void find(const Pose& X) noexcept;
     void remember(const Pose& X, const PoseMemory& memory) noexcept;
     motion::Motion step(const Pose& X, const motion::Motion& wanted, PoseMemory& memory) noexcept;
-    MotionMatrix factor(const Pose& X) const noexcept;
+    bool factor(const Pose& X, MotionMatrix& L) const noexcept;
     bool solveRows(const motion::Motion& wanted, motion::ActiveSet& active, motion::Motion& y) noexcept;
     void add(const Row& row) noexcept;
     motion::Motion shortened(const motion::Motion& u) const noexcept;

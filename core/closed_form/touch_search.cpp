@@ -4,44 +4,21 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <span>
+
+#include "core/closed_form/circle_samples.h"
 
 namespace passung::closed_form {
 
 namespace {
 
-constexpr int kCircleSamples = 24;
+constexpr int kCircleSamples = CircleSamples::kPieces;
 constexpr int kStraightSamples = 12;  // pieces
 constexpr int kRingSamples = 96;      // of a circle against a face that is not simple on it: minima may lie close
 constexpr int kSteps = 60;            // to close a bracket
 constexpr double kClosed = 1e-10;     // of a line's parameter
 constexpr double kOnFace = 1e-9;      // [m]
-
-/// Cosines and sines at the samples of a circle.
-struct CircleSamples {
-    std::array<double, kCircleSamples + 1> cosine{}, sine{};
-
-    CircleSamples() noexcept {
-        for (std::size_t i = 0; i < cosine.size(); ++i) {
-            const double t = std::numbers::pi * (2.0 * static_cast<double>(i) / kCircleSamples - 1.0);
-            cosine[i] = std::cos(t);
-            sine[i] = std::sin(t);
-        }
-    }
-};
-const CircleSamples kCircle;
-
-/// The i-th sample of a line.
-Vec3 samplePoint(const Curve& line, int i, double t) noexcept {
-    if (!line.isClosed()) return pointOf(line, t);
-    const auto at = static_cast<std::size_t>(i);
-    return line.centre + kCircle.cosine[at] * line.e1 + kCircle.sine[at] * line.e2;
-}
-
-Vec3 sampleSlope(const Curve& line, int i, double t) noexcept {
-    if (!line.isClosed()) return slopeOf(line, t);
-    const auto at = static_cast<std::size_t>(i);
-    return kCircle.cosine[at] * line.e2 - kCircle.sine[at] * line.e1;
-}
 
 std::uint8_t placeOf(const Lump& lump, const Face& face) noexcept {
     return static_cast<std::uint8_t>(&face - lump.faces.data());
@@ -70,6 +47,7 @@ public:
                            [](const Face* face) { return face->isConvex(); });
     }
 
+    std::span<const Face* const> faces() const noexcept { return {faces_.data(), count_}; }
     const Face* at(const Vec3& p, double& value) const noexcept {
         const Face* highest = faces_[0];
         value = valueOf(*highest, p);
@@ -108,6 +86,34 @@ Sample sampleAt(const Curve& line, const Highest& highest, double t) noexcept {
     sample.face = highest.at(sample.p, sample.value);
     sample.slope = slopeOn(*sample.face, line, t);
     return sample;
+}
+
+using EdgeSamples = std::array<Sample, kCircleSamples + 1>;
+
+/// Those of a whole circle, as far as possible at once.
+void sampleCircle(const Curve& circle, const Highest& highest, double begin, double piece,
+                  EdgeSamples& samples) noexcept {
+    CircleSamples all;
+    const bool told = all.take(circle, highest.faces());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        Sample& sample = samples[i];
+        sample.t = begin + piece * static_cast<double>(i);
+        sample.p = all.point(i);
+        if (told) {
+            sample.value = all.value[i];
+            sample.slope = all.slope[i];
+            sample.face = highest.faces()[static_cast<std::size_t>(all.face[i])];
+        } else {
+            sample.face = highest.at(sample.p, sample.value);
+            sample.slope = gradientOf(*sample.face, sample.p).dot(all.way(i));
+        }
+    }
+}
+
+void sampleEdge(const Curve& edge, const Highest& highest, double begin, double piece, int pieces,
+                EdgeSamples& samples) noexcept {
+    if (edge.isClosed()) return sampleCircle(edge, highest, begin, piece, samples);
+    for (int i = 0; i <= pieces; ++i) samples[static_cast<std::size_t>(i)] = sampleAt(edge, highest, begin + piece * i);
 }
 
 /// The zero of a function between two places where its sign differs, by false position after Illinois.
@@ -172,6 +178,29 @@ Touch minimumBetween(const Curve& line, const Lump& lump, const Highest& highest
     return {.kind = Touch::Kind::Fixed, .t = here.t, .gap = here.value, .a = placeOf(lump, *here.face)};
 }
 
+/// Between two samples that both fall or both rise: a kink from the one's face, which turned on the way, to the
+/// other's.
+std::optional<Touch> kinkBetween(const Curve& line, const Lump& lump, const Sample& low, const Sample& high) noexcept {
+    if (low.face == high.face || (low.slope < 0.0) != (high.slope < 0.0)) return std::nullopt;
+    const bool turned =
+        low.slope < 0.0 ? slopeOn(*high.face, line, low.t) > 0.0 : slopeOn(*low.face, line, high.t) < 0.0;
+    if (!turned) return std::nullopt;
+    const double t = zeroBetween(low.t, high.t, valueOf(*high.face, low.p) - low.value,
+                                 high.value - valueOf(*low.face, high.p), [&](double at) {
+                                     const Vec3 p = pointOf(line, at);
+                                     return valueOf(*high.face, p) - valueOf(*low.face, p);
+                                 });
+    const double falls = slopeOn(*low.face, line, t), rises = slopeOn(*high.face, line, t);
+    const double gap = valueOf(*low.face, pointOf(line, t));
+    if (!(falls < 0.0 && rises > 0.0) || valueOf(lump, pointOf(line, t)) > gap + 1e-15) return std::nullopt;
+    return Touch{.kind = Touch::Kind::Kink,
+                 .t = t,
+                 .gap = gap,
+                 .a = placeOf(lump, *low.face),
+                 .b = placeOf(lump, *high.face),
+                 .share = rises / (rises - falls)};
+}
+
 bool isBeside(const Touches& touches, const Curve& line, double t) noexcept {
     for (const Touch& touch : touches.all()) {
         if (apartOn(line, touch.t, t) < (touch.kind == Touch::Kind::Kink ? kBesideKink : kSameTouch)) return true;
@@ -215,9 +244,47 @@ void addCore(const Curve& core, const Face& face, const Lump& lump, double t, do
     touches.add({.kind = Touch::Kind::Smooth, .t = t, .gap = gap, .a = placeOf(lump, face)});
 }
 
+/// An upper bound of the second derivative of a face's function along a line, between two samples that are no more
+/// than `way` apart: eᵀ K e + g · bend, with K at most 1 / r across the axis, and below 0 of what is hollow.
+double mostBend(const Face& face, const Curve& line, const Sample& low, const Sample& high, double way) noexcept {
+    const double turn = line.kind == Curve::Kind::Circle ? line.extent() : 0.0;
+    if (face.isPlane() || face.hollow) return turn;
+    if (face.kind == Face::Kind::Torus) return std::numeric_limits<double>::infinity();
+    const auto fromAxis = [&](const Vec3& p) {
+        const Vec3 d = p - face.origin;
+        return face.kind == Face::Kind::Sphere ? d.norm() : (d - d.dot(face.axis) * face.axis).norm();
+    };
+    const double r = std::min(fromAxis(low.p), fromAxis(high.p)) - 0.5 * way;
+    return r > 0.0 ? turn + line.extent() * line.extent() / r : std::numeric_limits<double>::infinity();
+}
+
+/// A lower bound of the largest function between two samples that are `piece` of t apart, closer than by the length of
+/// the way alone: with a second derivative of at most M a function is short of its chord by at most M piece² / 8.
+double closerBound(const Curve& line, const Sample& low, const Sample& high, double piece) noexcept {
+    const double way = line.extent() * piece;
+    double bound = 0.5 * (low.value + high.value - way);
+    const auto take = [&](const Face& face, double at_low, double at_high) {
+        bound =
+            std::max(bound, std::min(at_low, at_high) - 0.125 * mostBend(face, line, low, high, way) * piece * piece);
+    };
+    if (low.face == high.face) {
+        take(*low.face, low.value, high.value);
+    } else {
+        take(*low.face, low.value, valueOf(*low.face, high.p));
+        take(*high.face, valueOf(*high.face, low.p), high.value);
+    }
+    return bound;
+}
+
+/// A straight core's material ends with flat faces, so that only what lies beside it counts: nothing does of a plane or
+/// a hollow face, which are nearest to its ends.
+bool canTouch(const Curve& core, const Face& face) noexcept {
+    return core.kind != Curve::Kind::Straight || !(face.isPlane() || face.hollow);
+}
+
 }  // namespace
 
-double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& touches) noexcept {
+double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& touches, double* closer) noexcept {
     const Highest highest(edge, lump);
     if (highest.least() > reach) return highest.least();
     if (edge.kind == Curve::Kind::Straight && highest.isConvex())
@@ -225,36 +292,36 @@ double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& to
     const bool closed = edge.isClosed();
     const int pieces = edge.kind == Curve::Kind::Circle ? kCircleSamples : kStraightSamples;
     const double begin = -edge.end, piece = 2.0 * edge.end / pieces;
-    std::array<Sample, kCircleSamples + 1> samples;
-    for (int i = 0; i <= pieces; ++i) {
-        Sample& sample = samples[static_cast<std::size_t>(i)];
-        sample.t = begin + piece * i;
-        sample.p = samplePoint(edge, i, sample.t);
-        sample.face = highest.at(sample.p, sample.value);
-    }
+    EdgeSamples samples;
+    sampleEdge(edge, highest, begin, piece, pieces, samples);
     const double farthest = edge.extent() * piece;
     double least = samples[0].value;
-    bool sloped = false;  // the sample before has its slope
     for (int i = 0; i < pieces; ++i) {
-        Sample& low = samples[static_cast<std::size_t>(i)];
-        Sample& high = samples[static_cast<std::size_t>(i) + 1];
+        const Sample& low = samples[static_cast<std::size_t>(i)];
+        const Sample& high = samples[static_cast<std::size_t>(i) + 1];
         const double bound = 0.5 * (low.value + high.value - farthest);
         least = std::min(least, bound);
-        if (bound > reach) {
-            sloped = false;
+        if (bound > reach) continue;
+        if (!(low.slope < 0.0 && high.slope >= 0.0)) {
+            if (const auto kink = kinkBetween(edge, lump, low, high); kink && kink->gap <= reach) touches.add(*kink);
             continue;
         }
-        if (!sloped) low.slope = gradientOf(*low.face, low.p).dot(sampleSlope(edge, i, low.t));
-        high.slope = gradientOf(*high.face, high.p).dot(sampleSlope(edge, i + 1, high.t));
-        sloped = true;
-        if (!(low.slope < 0.0 && high.slope >= 0.0)) continue;
         const Touch touch = minimumBetween(edge, lump, highest, low, high);
         if (touch.gap <= reach) touches.add(touch);
+    }
+    if (closer != nullptr) {
+        *closer = samples[0].value;
+        for (std::size_t i = 0; i < static_cast<std::size_t>(pieces); ++i)
+            *closer = std::min(*closer, closerBound(edge, samples[i], samples[i + 1], piece));
     }
     const int fan = edge.kind == Curve::Kind::Circle ? kCircleSamples / 8 : kStraightSamples;
     for (int i = 0; i < pieces + (closed ? 0 : 1); i += fan)
         addFixed(edge, lump, samples[static_cast<std::size_t>(i)], reach, touches);
     return least;
+}
+
+bool canTouch(const Curve& core, const Lump& lump) noexcept {
+    return std::any_of(lump.faces.begin(), lump.faces.end(), [&](const Face& face) { return canTouch(core, face); });
 }
 
 double searchCore(const Curve& core, const Lump& lump, double reach, Touches& touches) noexcept {
@@ -271,10 +338,8 @@ double searchCore(const Curve& core, const Lump& lump, double reach, Touches& to
             addCore(core, face, lump, 0.0, reach, touches);
             continue;
         }
-        // A straight core's material ends with flat faces, so that only what lies beside it counts: nothing does of
-        // a plane or a hollow face, which are nearest to its ends.
         const bool straight = core.kind == Curve::Kind::Straight;
-        if (straight && (face.isPlane() || face.hollow)) continue;
+        if (!canTouch(core, face)) continue;
         const int pieces = straight ? kStraightSamples : kRingSamples;
         const double begin = -core.end, piece = 2.0 * core.end / pieces;
         double low = begin, at_low = slopeOn(face, core, low);

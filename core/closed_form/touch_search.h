@@ -35,11 +35,15 @@ inline constexpr double kSameTouch = 2e-3;  // of a line's parameter
 /// the frame of the lump. The function is the largest of the faces', because the material is convex at an edge: outside
 /// one face is enough. A minimum is bracketed between samples and found by false position, anew at every call: where
 /// one splits into two, both are found. rt-safe.
-/// Returns a bound that the lump's function is nowhere below on the edge [m].
-double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& touches) noexcept;
+/// Returns a bound that the lump's function is nowhere below on the edge [m]. `closer`: a second one, which takes
+/// longer and is mostly higher; where it would not be it is left as it is.
+double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& touches,
+                  double* closer = nullptr) noexcept;
 
 /// The places where the material around a core is nearest to single faces, with the nearest point on the face itself.
 /// Returns a bound as searchEdge() does, of the distance less the thickness. rt-safe.
 double searchCore(const Curve& core, const Lump& lump, double reach, Touches& touches) noexcept;
+/// Could it find any, wherever the core lies?
+bool canTouch(const Curve& core, const Lump& lump) noexcept;
 
 }  // namespace passung::closed_form

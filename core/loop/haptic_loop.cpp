@@ -41,28 +41,41 @@ HapticCycle::HapticCycle(const tick::TickModel& model, HapticDevice& device, Rec
     : HapticCycle(std::array{tick::SceneTurn{&model}}, device, ring, show_proxy, screens) {}
 
 HapticCycle::HapticCycle(std::span<const tick::SceneTurn> turns, HapticDevice& device, RecordRing& ring,
-                         bool show_proxy, std::span<ScreenRing* const> screens, TickListener* listener)
-    : scenes_(turns), device_(device), ring_(ring), show_proxy_(show_proxy), screens_(screens), listener_(listener) {}
+                         bool show_proxy, std::span<ScreenRing* const> screens, TickListener* listener, bool timed)
+    : scenes_(turns),
+      device_(device),
+      ring_(ring),
+      show_proxy_(show_proxy),
+      screens_(screens),
+      listener_(listener),
+      timed_(timed) {}
+
+/// The clock of the processor is the slower to read: outside, where it does not count as the tick's wall time.
+tick::TickOutput HapticCycle::compute(const DeviceReading& reading, Times& times) noexcept {
+    if (!timed_) return scenes_.step(reading);
+    const std::int64_t processor_begin = threadProcessorNanoseconds();
+    times.begin = now();
+    const tick::TickOutput output = scenes_.step(reading);
+    times.wall = now() - times.begin;
+    times.processor = threadProcessorNanoseconds() - processor_begin;
+    timing_.add(times.wall);
+    processor_timing_.add(times.processor);
+    return output;
+}
 
 void HapticCycle::run(std::uint32_t missed) noexcept {
     const std::int64_t tick = scenes_.tick();
     DeviceReading reading = device_.read();
     reading.periods = 1 + missed;
-    // The clock of the processor is the slower to read: outside, where it does not count as the tick's wall time.
-    const std::int64_t processor_begin = threadProcessorNanoseconds();
-    const std::int64_t begin = now();
-    const tick::TickOutput output = scenes_.step(reading);
-    const std::int64_t duration = now() - begin;
-    const std::int64_t processor = threadProcessorNanoseconds() - processor_begin;
+    Times times;
+    const tick::TickOutput output = compute(reading, times);
     device_.command(output.F_D_B);
-    timing_.add(duration);
-    processor_timing_.add(processor);
 
     TickRecord record = tick::makeRecord(tick, reading, output);
-    record.duration_ns = duration;
-    record.processor_ns = processor;
+    record.duration_ns = times.wall;
+    record.processor_ns = times.processor;
     ring_.tryPush(record);
-    for (ScreenRing* screen : screens_) screen->tryPush({record, begin});
+    for (ScreenRing* screen : screens_) screen->tryPush({record, times.begin});
     if (listener_ != nullptr) listener_->take(record);
 
     if (hasPicture(tick)) {

@@ -34,9 +34,9 @@ public:
     /// they drop matters to nobody. Borrows everything.
     HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy,
                 std::span<ScreenRing* const> screens = {});
-    /// The same for scenes that are rendered one after the other.
+    /// The same for scenes that are rendered one after the other. Not `timed`: no clock is read, all times are 0.
     HapticCycle(std::span<const tick::SceneTurn> turns, HapticDevice& device, RecordRing& ring, bool show_proxy,
-                std::span<ScreenRing* const> screens = {}, TickListener* listener = nullptr);
+                std::span<ScreenRing* const> screens = {}, TickListener* listener = nullptr, bool timed = true);
 
     /// One cycle. `missed`: cycles that were missed since the previous one, because it ended after its deadline; for
     /// the record, which else could not tell how much time lies between two ticks. rt-safe.
@@ -55,12 +55,18 @@ public:
     const TimingHistogram& processorTiming() const { return processor_timing_; }
 
 private:
+    struct Times {
+        std::int64_t begin = 0, wall = 0, processor = 0;  // when it began, how long it took [ns]
+    };
+    tick::TickOutput compute(const DeviceReading& reading, Times& times) noexcept;
+
     tick::SceneSequence scenes_;
     HapticDevice& device_;
     RecordRing& ring_;
     bool show_proxy_;
     std::span<ScreenRing* const> screens_;
     TickListener* listener_;  // may be null
+    bool timed_;
     TimingHistogram timing_, processor_timing_;
 };
 

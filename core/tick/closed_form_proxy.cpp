@@ -93,9 +93,9 @@ void measureClosedFormDepth(const TickModel&, const HandSample& hand, ClosedForm
                             Report& report) noexcept {
     depth.hand_depth = 0.0;
     for (closed_form::ContactSearch& search : memory.at_hand) {
-        search.find(hand.X_WH, 0.0, memory.found);
-        depth.hand_depth = std::max(depth.hand_depth, closed_form::overlapOf(memory.found));
-        if (memory.found.full()) report.status |= kContactCap;
+        const closed_form::ContactSearch::Overlap found = search.overlapAt(hand.X_WH);
+        depth.hand_depth = std::max(depth.hand_depth, found.depth);
+        if (found.full) report.status |= kContactCap;
     }
 }
 

@@ -45,22 +45,35 @@ std::vector<session::StageNote> stageNotes(std::span<const tick::Stage> stages) 
 }
 
 LoopApparatus::Run::Run(BuiltScenes built, HeldDevice device, const plan::Condition& condition,
-                        std::span<loop::ScreenRing* const> screens)
+                        std::span<loop::ScreenRing* const> screens, bool timed)
     : scenes(std::move(built)),
       held(std::move(device)),
       cues(session::cueSettings(condition.cues), held.person, held.device->pushesHand()),
       ring(kRingRecords),
-      cycle(scenes.turns, *held.device, ring, condition.shown == plan::ShownPose::Proxy, screens, &cues) {}
+      cycle(scenes.turns, *held.device, ring, condition.shown == plan::ShownPose::Proxy, screens, &cues, timed) {}
 
 LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock,
                              Performer* performer, const ImportLimits& import_limits)
-    : description_(performer == nullptr ? simulated::describe(device) : performer->describe(device)),
+    : described_(performer == nullptr ? simulated::describe(device) : performer->describe(device)),
+      description_(described_),
       person_(person),
       clock_(clock),
       performer_(performer),
       store_(openBuilds(import_limits)) {}
 
 LoopApparatus::~LoopApparatus() = default;
+
+void LoopApparatus::passTo(const person::SimulatedPerson& person) {
+    {
+        const std::lock_guard lock(halt_mutex_);
+        run_.reset();
+        halted_ = false;
+    }
+    description_ = described_;
+    person_ = person;
+    started_ns_ = periods_ = 0;
+    engaged_at_.reset();
+}
 
 Result<std::vector<session::StageNote>> LoopApparatus::prepare(const plan::Condition& condition, std::uint64_t seed,
                                                                std::int64_t trials_before) {
@@ -76,7 +89,8 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const plan::Condi
     description_ = held.device->description();
     auto run =
         std::make_unique<Run>(std::move(*scenes), std::move(held), condition,
-                              performer_ == nullptr ? std::span<loop::ScreenRing* const>() : performer_->screens());
+                              performer_ == nullptr ? std::span<loop::ScreenRing* const>() : performer_->screens(),
+                              clock_ == Clock::RealTime || performer_ != nullptr);
     {
         const std::lock_guard lock(halt_mutex_);
         run_.swap(run);

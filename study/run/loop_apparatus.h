@@ -28,6 +28,9 @@ public:
                   Performer* performer = nullptr, const ImportLimits& import_limits = {});
     ~LoopApparatus() override;
 
+    /// The next person takes the device: as newly made, but for what is kept of parts. Between sessions.
+    void passTo(const person::SimulatedPerson& person);
+
     const DeviceDescription& device() const override { return description_; }
     Result<std::vector<session::StageNote>> prepare(const plan::Condition& condition, std::uint64_t seed,
                                                     std::int64_t trials_before) override;
@@ -56,7 +59,7 @@ private:
         std::unique_ptr<loop::RealTimeThread> thread;
 
         Run(BuiltScenes built, HeldDevice device, const plan::Condition& condition,
-            std::span<loop::ScreenRing* const> screens);
+            std::span<loop::ScreenRing* const> screens, bool timed);
     };
 
     session::Presentation presentation() const;
@@ -65,7 +68,7 @@ private:
                           std::int64_t trials_before) const;
     session::Delivered delivered(const std::optional<session::Presentation>& presentation) const;
 
-    DeviceDescription description_;
+    DeviceDescription described_, description_;  // of the device itself; as the newest attempt had it
     person::SimulatedPerson person_;
     Clock clock_;
     Performer* performer_;

@@ -119,7 +119,7 @@ public:
         if (const auto slot = store_.assignSlot(sha256_, session.participant, fits); !slot) return slot.errors();
         listener_(session::ParticipantBegins{session.participant});
 
-        LoopApparatus apparatus = apparatusOf(session.participant);
+        LoopApparatus& apparatus = apparatusOf(session.participant);
         const store::UtcClock clock = clockNow(session.used_ns, session.latest_utc);
         const auto start = startOf(session.session_id, session.participant, session.ordinal, clock, apparatus);
         auto writer = store_.resumeSession(start, session.used_ns);
@@ -151,10 +151,15 @@ private:
                           : store::UtcClock::virtualEpoch();
     }
 
-    LoopApparatus apparatusOf(const std::string& code) const {
+    /// One for all sessions, so that its parts are built once.
+    LoopApparatus& apparatusOf(const std::string& code) {
         const simulated::DeviceParams* device = simulated::findPreset(plan_->conditions.front().device);
-        return LoopApparatus(*device, person::personOf(plan_->name, code, plan_->seed), options_.clock,
-                             options_.performer, options_.import_limits);
+        const person::SimulatedPerson person = person::personOf(plan_->name, code, plan_->seed);
+        if (apparatus_)
+            apparatus_->passTo(person);
+        else
+            apparatus_.emplace(*device, person, options_.clock, options_.performer, options_.import_limits);
+        return *apparatus_;
     }
 
     store::SessionStart startOf(std::string session_id, std::string code, int ordinal, const store::UtcClock& clock,
@@ -179,7 +184,7 @@ private:
     Result<RunEnd> session(const std::string& code, const session::DesignPlace& place, int part) {
         auto ordinal = store_.nextOrdinal(code);
         if (!ordinal) return ordinal.errors();
-        LoopApparatus apparatus = apparatusOf(code);
+        LoopApparatus& apparatus = apparatusOf(code);
         const auto start =
             startOf(store::sessionId(plan_->name, code, *ordinal, plan_->seed), code, *ordinal, clockNow(), apparatus);
         const auto trials = session::planTrials(*plan_, place, code, part);
@@ -261,6 +266,7 @@ private:
     const session::SessionListener& listener_;
     store::Store& store_;
     std::string sha256_;
+    std::optional<LoopApparatus> apparatus_;
 };
 
 store::Store::Opened openForRun(const RunOptions& options, const session::SessionListener& listener,

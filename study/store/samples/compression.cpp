@@ -6,14 +6,23 @@
 
 namespace passung::store {
 
+/// By runs of equal bytes alone: of samples in planes these are nearly all that is to be found, in two thirds of the
+/// time of the fastest search, and an eighth larger.
 std::vector<std::byte> deflated(std::span<const std::byte> bytes) {
-    uLongf size = compressBound(static_cast<uLong>(bytes.size()));
-    std::vector<std::byte> stream(size);
-    const int result = compress2(reinterpret_cast<Bytef*>(stream.data()), &size,
-                                 reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()), 1);
-    if (result != Z_OK) throw std::runtime_error("zlib cannot pack the samples");
-    stream.resize(size);
-    return stream;
+    constexpr int kLevel = 1, kLargestWindow = 15, kUsualMemory = 8;
+    z_stream stream{};
+    if (deflateInit2(&stream, kLevel, Z_DEFLATED, kLargestWindow, kUsualMemory, Z_RLE) != Z_OK)
+        throw std::runtime_error("zlib cannot pack the samples");
+    std::vector<std::byte> packed(deflateBound(&stream, static_cast<uLong>(bytes.size())));
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data()));  // zlib only reads it
+    stream.avail_in = static_cast<uInt>(bytes.size());
+    stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+    stream.avail_out = static_cast<uInt>(packed.size());
+    const int result = deflate(&stream, Z_FINISH);
+    packed.resize(stream.total_out);
+    deflateEnd(&stream);
+    if (result != Z_STREAM_END) throw std::runtime_error("zlib cannot pack the samples");
+    return packed;
 }
 
 std::vector<std::byte> inflated(std::span<const std::byte> stream, std::size_t size) {

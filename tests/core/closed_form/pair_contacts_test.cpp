@@ -114,6 +114,61 @@ TEST_P(ContactsOfShapes, ChangeWithAMotionAsTheirRowsAndCurvaturesSay) {
     EXPECT_LT(quantile(second, 0.9), 2e-2);
 }
 
+TEST_P(ContactsOfShapes, HaveTheirEdgesNoDeeperThanTheirBounds) {
+    // Truth: the lump's function itself at dense points of the edge.
+    const auto held = solidOf(GetParam().held), obstacle = solidOf(GetParam().obstacle);
+    Random random(7);
+    for (int tried = 0; tried < 300; ++tried) {
+        const Pose X{randomRotation(random, GetParam().tilt),
+                     GetParam().start + randomVector(random, GetParam().amplitude)};
+        for (Curve edge : held->edges) {
+            edge.centre = X * edge.centre;
+            edge.e1 = X.q * edge.e1;
+            edge.e2 = X.q * edge.e2;
+            for (const Lump& lump : obstacle->lumps) {
+                Touches touches;
+                double closer = -1.0;
+                const double bound = searchEdge(edge, lump, 1e-3, touches, &closer);
+                double least = 1.0;
+                for (int i = 0; i <= 400; ++i)
+                    least = std::min(least, valueOf(lump, pointOf(edge, edge.end * (i / 200.0 - 1.0))));
+                ASSERT_LE(bound, least + 1e-12);
+                ASSERT_LE(closer, least + 1e-12);
+            }
+        }
+    }
+}
+
+TEST_P(ContactsOfShapes, OverlapByAsMuchAsTheDeepestOfThemForASearchThatLooksAtFewOnly) {
+    // Truth: the deepest of all contacts, found anew at each pose, to the bit; on slow and fast ways.
+    const auto held = solidOf(GetParam().held), obstacle = solidOf(GetParam().obstacle);
+    Random random(6);
+    const Pose X_WO{randomRotation(random, 3.0), randomVector(random, Vec3::Constant(0.01))};
+    const SolidPair pair{&*held, &*obstacle, X_WO, kRho};
+    int overlaps = 0;
+    for (const double step : {2e-5, 5e-4}) {
+        ContactSearch search(pair);
+        Vec3 p = GetParam().start;
+        Quat q = Quat::Identity();
+        for (int i = 0; i < 500; ++i) {
+            if (i % 100 == 0) {
+                p = GetParam().start + randomVector(random, GetParam().amplitude);
+                q = randomRotation(random, GetParam().tilt);
+            }
+            p += randomVector(random, Vec3::Constant(step));
+            q = (randomRotation(random, 40.0 * step) * q).normalized();
+            const Pose X = X_WO * Pose{q, p};
+            PairContacts all;
+            ContactSearch(pair).find(X, 0.0, all);
+            const ContactSearch::Overlap found = search.overlapAt(X);
+            ASSERT_EQ(found.depth, overlapOf(all)) << i;
+            ASSERT_LE(found.full, all.full());
+            overlaps += found.depth > 0.0 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(overlaps, 50);
+}
+
 TEST_P(ContactsOfShapes, AreTheSameForASearchThatRemembersWhatIsFar) {
     // Truth: invariant.
     const auto held = solidOf(GetParam().held), obstacle = solidOf(GetParam().obstacle);
@@ -132,6 +187,24 @@ TEST_P(ContactsOfShapes, AreTheSameForASearchThatRemembersWhatIsFar) {
         ASSERT_EQ(one.all().size(), other.all().size()) << i;
         for (std::size_t k = 0; k < one.all().size(); ++k) EXPECT_EQ(one.all()[k].gap, other.all()[k].gap);
     }
+}
+
+TEST(ContactsOfRims, AreTwoWhereARimCrossesTwoFacesBetweenTwoSamples) {
+    // Truth: the lump's function at dense points of the mouth's rim. A tick of the shipped study: the peg's tip stands
+    // on the mouth's rim, which meets its chamfer 11 degrees further, both within 15 degrees.
+    const auto peg = solidOf(shape::Peg{.02, .05, .0005});
+    const auto plate = solidOf(shape::BorePlate{.06, .06, .03, .0202, .025, .0005});
+    const Pose X{
+        Quat(0.9998910427093506, -0.010717242024838924, 0.01015303935855627, -1.4173131603456568e-05).normalized(),
+        Vec3(-0.0007147965952754021, -0.0008499546092934906, -0.0002800616784952581)};
+    double deepest = 0.0;
+    for (int i = 0; i < 100'000; ++i)
+        deepest =
+            std::min(deepest, valueOf(peg->lumps[0], X.inverse() * pointOf(plate->edges[1], 2e-5 * M_PI * i - M_PI)));
+    PairContacts found;
+    ContactSearch({&*peg, &*plate, {}, kRho}).find(X, 1e-3, found);
+    EXPECT_LT(deepest, -3e-6);
+    EXPECT_NEAR(-overlapOf(found), deepest, 2e-8);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ContactsOfShapes, testing::ValuesIn(shapePairs()), nameOfPair);
