@@ -26,13 +26,13 @@ Vec3 onSide(std::size_t side, double u, double v) {
     return p;
 }
 
-struct Cells {
+struct NormalCells {
     std::array<double, kSide + 1> borders;
     std::array<double, kCorners> x, y, z;                                 // unit vectors
     std::array<std::array<std::size_t, 4>, NormalClass::kCount> corners;  // of each cell
     PerClass factor;                                                      // 1 / min c_i · e
 
-    Cells() {
+    NormalCells() {
         for (std::size_t k = 0; k <= kSide; ++k) borders[k] = border(k);
         for (std::size_t side = 0; side < 6; ++side)
             for (std::size_t i = 0; i <= kSide; ++i)
@@ -61,7 +61,7 @@ struct Cells {
     }
 };
 
-const Cells kCells;
+const NormalCells kCells;
 
 std::size_t placeOf(double u) noexcept {
     std::size_t k = 0;
