@@ -171,6 +171,23 @@ TEST(ClosedFormPaths, ATiltedPegIsNotHeldAlongItsAxis) {
     }
 }
 
+TEST(ClosedFormPaths, AnAlignedPegGoesInAtAnySpeedAsIfNothingWereThere) {
+    // Truth: closed form: the peg on the bore's axis overlaps nowhere, so that no pose is nearer to the hand than it.
+    // What held it back by the chamfer in the tick before is no obstacle once its body is in the bore.
+    for (const double play : kPlays)
+        for (const double speed : {0.007, 0.022, 0.05, 0.1})
+            for (int k = 0; k < 8; ++k) {
+                const double start = -0.0005 + 1e-3 * speed * k / 8.0;
+                test::Bench bench(sceneOf(kPeg, {Quat::Identity(), Vec3(0, 0, start)}, bore(play)));
+                double lag = 0.0;
+                for (int i = 0; i < 200; ++i) {
+                    const Pose X_WH{Quat::Identity(), Vec3(0, 0, start - 1e-3 * i * speed)};
+                    lag = std::max(lag, (bench.step(X_WH).X_WG.p - X_WH.p).norm());
+                }
+                EXPECT_LE(lag, 1e-6) << play << " " << speed << " " << k;
+            }
+}
+
 /// What a stroke is made with.
 struct Stroke {
     const char* name;
