@@ -48,7 +48,7 @@ const Golden kGolden[] = {
 constexpr std::uint64_t kEveryEffect = 0x9ba5816cee9eacb6u;
 
 /// The same without friction, on closed forms.
-constexpr std::uint64_t kClosedForm = 0x72e214330b6095e3u;
+constexpr std::uint64_t kClosedForm = 0x2241100245299f50u;
 
 constexpr const char* kParts = R"(
 [[part]]
