@@ -251,7 +251,20 @@ void ContactSearch::look(const PlacedPair& placed, double reach, bool closely, M
 }
 
 Contact atPose(const SolidPair& pair, const Pose& X_WH, const Contact& contact) noexcept {
-    return contactOf(pair, viewOf(pair, X_WH, contact.name), contact.name, contact.touch);
+    const LineView view = viewOf(pair, X_WH, contact.name);
+    const Contact there = contactOf(pair, view, contact.name, contact.touch);
+    const std::vector<Face>& faces = lumpOf(pair, contact.name).faces;
+    const Vec3 p = pointOf(view.line, contact.touch.t);
+    std::size_t highest = 0;
+    for (std::size_t i = 1; i < faces.size(); ++i)
+        if (valueOf(faces[i], p) > valueOf(faces[highest], p)) highest = i;
+    if (!(valueOf(faces[highest], p) - view.line.thickness > there.gap + kSameFaces)) return there;
+    Touch other = contact.touch;
+    other.kind = Touch::Kind::Fixed;
+    other.a = static_cast<std::uint8_t>(highest);
+    other.b = Touch::kNone;
+    other.share = 1.0;
+    return contactOf(pair, view, contact.name, other);
 }
 
 MotionMatrix curvatureOf(const SolidPair& pair, const Pose& X_WH, const Contact& contact, bool slides) noexcept {

@@ -92,7 +92,9 @@ private:
     double way_ = 0.0, turn_ = 0.0;  // that the held part has made [m], [rad]
 };
 
-/// The contact that the same place of the line makes at another pose, with the same faces. rt-safe.
+/// The contact that the same place of the line makes at another pose. With the same faces, unless another one is higher
+/// there by more than kSameFaces: outside one face is enough, so that the others are no obstacle any more. rt-safe.
+inline constexpr double kSameFaces = 1e-6;  // [m]
 Contact atPose(const SolidPair& pair, const Pose& X_WH, const Contact& contact) noexcept;
 
 /// H of a contact, as X_WH has it. Where the contact moves along its line as the parts move (`slides`), that is

@@ -188,7 +188,8 @@ motion::Motion PoseSolver::shortened(const motion::Motion& u) const noexcept {
     const double rho = searches_.empty() ? 1.0 : pair(0).metric_radius;
     const double way = u.head<3>().norm() + reach_ / rho * u.tail<3>().norm();
     if (way < free_) return u;
-    const double share = std::min(longest_way_ / way, kLongestLook / u.norm());
+    const double turn = u.tail<3>().norm() / rho, rise = reach_ * turn * turn / 8.0;
+    const double share = std::min({longest_way_ / way, kLongestLook / u.norm(), std::sqrt(kMostRise / rise)});
     return std::min(1.0, std::max(share, free_ / way)) * u;
 }
 
@@ -198,6 +199,7 @@ ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory
     const double rho = searches_.empty() ? 1.0 : pair(0).metric_radius;
     Pose X = X_WG;
     double last = std::numeric_limits<double>::infinity();  // length of the last look's motion
+    double astray = 0.0;                                    // of the motions since the last pose that counts
     for (int i = 0;; ++i) {
         find(X);
         const motion::Motion wanted = wayTo(X, X_WH, rho);
@@ -209,14 +211,19 @@ ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory
             result.overlap = overlap_;
             result.full = full_;
             result.pull = wanted;
+            astray = 0.0;
         }
         result.converged = kept && last <= kStillMoving;
         if (result.converged || i == most) return result;
         result.iterations = i + 1;
         remember(X, memory);
-        const motion::Motion u = step(X, wanted, memory);
-        last = u.norm();
-        X = movedBy(X, shortened(u), rho);
+        const bool back = !kept && astray > kMostAstray;
+        PoseMemory aside = memory;
+        const motion::Motion u = back ? step(X, motion::Motion::Zero(), aside) : step(X, wanted, memory);
+        const motion::Motion made = shortened(u);
+        last = back ? std::numeric_limits<double>::infinity() : u.norm();
+        astray += back ? 0.0 : made.norm();
+        X = movedBy(X, made, rho);
     }
 }
 

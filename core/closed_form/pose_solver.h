@@ -39,6 +39,8 @@ struct ConstrainedPose {
 inline constexpr int kMostLooks = 24;
 inline constexpr double kLongestLook = 2.5e-4;  // of |u| in a look near an obstacle [m]
 inline constexpr double kLongestWay = 7e-4;     // of any point of the held part in such a look [m]
+inline constexpr double kMostRise = 1e-7;       // of any point's arc over its chord in such a look [m]
+inline constexpr double kMostAstray = 6e-5;     // of |u| of looks since the last pose without overlap [m]
 inline constexpr double kRepair = 1e-4;         // of overlap that was there before, in a solve [m]
 inline constexpr double kKeptOverlap = 5e-8;    // [m]
 inline constexpr double kStillMoving = 2e-6;    // of |u| in a look: the error left is of second order [m]
@@ -57,6 +59,9 @@ inline constexpr int kKeptLooks = 6;
 /// no point of the held part goes farther than is proven to be free, or than kLongestWay and half the thickness of the
 /// thinnest part, which is less than the distance in which contacts are rows: to come to the other side of an obstacle
 /// it would have to break rows by more than that, and they are broken by the second order of a look only.
+/// A look that goes round a bend ends in overlap of second order. Before the way has gone on by more than kMostAstray
+/// since the last pose that counts, a look makes no way but out of that overlap: so a straight line from one pose of
+/// way() to the next is as free as they are, give or take kMostRise, where the hand snaps past an edge too.
 /// A start in overlap comes out by kRepair a solve, the deepest contacts first.
 /// What a solver knows of earlier poses changes its time, never its result.
 class PoseSolver {

@@ -274,14 +274,18 @@ PASSUNG_INLINE NearestHulls iterateIn(const HullPair& pair, const Placement& X0,
 
 PASSUNG_V3 NearestHulls iterateV3(const HullPair& pair, const Placement& X0, const Placement* X1, const Vec3& from,
                                   double enough, double hopeless) noexcept {
-    return iterateIn(pair, X0, X1, from, enough, hopeless);
+    const NearestHulls result = iterateIn(pair, X0, X1, from, enough, hopeless);
+    PASSUNG_CLEAR_UPPER();
+    return result;
 }
 NearestHulls iterateBaseline(const HullPair& pair, const Placement& X0, const Placement* X1, const Vec3& from,
                              double enough, double hopeless) noexcept {
     return iterateIn(pair, X0, X1, from, enough, hopeless);
 }
 PASSUNG_V3 double leastReachV3(const ClusterTree& tree, const Cluster& cluster, const Vec3& way) noexcept {
-    return leastReach(tree, cluster, way);
+    const double reach = leastReach(tree, cluster, way);
+    PASSUNG_CLEAR_UPPER();
+    return reach;
 }
 double leastReachBaseline(const ClusterTree& tree, const Cluster& cluster, const Vec3& way) noexcept {
     return leastReach(tree, cluster, way);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <ostream>
 #include <span>
 #include <string>
@@ -15,6 +17,8 @@
 #include "core/tick/god_object.h"
 #include "tests/hard/case.h"
 #include "tests/hard/figures.h"
+#include "tests/hard/found.h"
+#include "tests/hard/found_onlooker.h"
 
 namespace passung::hard {
 namespace {
@@ -63,6 +67,50 @@ TEST_P(Hard, CaseHoldsItsMark) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, Hard, testing::ValuesIn(holds()), [](const auto& hold) { return hold.param.name(); });
+
+/// A found case and one of the methods.
+struct FoundWith {
+    const Found* what;
+    scene::ContactMethod method;
+    const char* method_name;
+};
+
+void PrintTo(const FoundWith& found, std::ostream* out) { *out << found.what->name; }
+
+/// By default each with one of its methods, in turns.
+std::vector<FoundWith> foundOnes() {
+    std::vector<FoundWith> all;
+    std::size_t turn = 0;
+    for (const Found& found : foundCases()) {
+        std::vector<FoundWith> of_case;
+        for (const auto& [method, name] : methods())
+            if ((found.methods >> static_cast<int>(method)) & 1u) of_case.push_back({&found, method, name});
+        if (everything())
+            all.insert(all.end(), of_case.begin(), of_case.end());
+        else
+            all.push_back(of_case[turn++ % of_case.size()]);
+    }
+    return all;
+}
+
+class FoundCase : public testing::TestWithParam<FoundWith> {};
+
+TEST_P(FoundCase, IsNoLongerFound) {
+    // Truth: triangle against triangle as they were made (mesh_crossing.h), or dense points and exact distances
+    // (dense_overlap.h), at every tick and on the way between. What is missed of grain and time is printed.
+    const auto& [found, method, name] = GetParam();
+    const auto measured = measureFound(*found, method, fullSize());
+    ASSERT_TRUE(measured) << toString(measured.errors().front());
+    std::printf("%s", describe(*found, name, *measured).c_str());
+    for (const Figure& figure : measured->figures)
+        if (figure.holds) {
+            EXPECT_LE(figure.value, figure.mark) << figure.name;
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, FoundCase, testing::ValuesIn(foundOnes()), [](const auto& found) {
+    return std::string(found.param.what->name) + "_" + found.param.method_name;
+});
 
 TEST(HardCases, PenaltyFallsThroughSheetAndThinPlate) {
     // Truth: independent program (FCL): forces from the overlap alone hold nothing back, so that what these cases count
@@ -140,6 +188,48 @@ TEST(HardCases, NoMarkIsHeldByAProxyThatDoesNotFollowOrByWhatIsNotFelt) {
             EXPECT_TRUE(seen[i]) << c.name << ": a proxy that " << kFaults[i].name;
         }
     }
+}
+
+/// What geometry says of a found case's run where each tick's output was spoilt, and the obstacle stands higher [m].
+Seen seenOf(const char* name, const std::function<void(tick::TickOutput&)>& spoil, double higher = 0.0) {
+    const auto found = std::find_if(foundCases().begin(), foundCases().end(),
+                                    [&](const Found& one) { return one.name == std::string(name); });
+    auto scene = found->make(0);
+    if (!scene) return {};
+    scene->spec.contact.method = scene::ContactMethod::GodObject;
+    FoundScene judged = *scene;
+    for (Vec3& v : judged.obstacle.vertices) v.z() += higher;
+    for (scene::PartSpec& part : judged.spec.parts)
+        if (!part.held) part.X_WP.p.z() += higher;
+    FoundOnlooker looks(*found, judged, true);
+    const auto run =
+        runScene(scene->spec, driveOf(*scene), 1200, [&](const auto& model, const auto& state, const auto& output) {
+            tick::TickOutput spoilt = output;
+            spoil(spoilt);
+            looks.look(model, state, spoilt);
+        });
+    return run ? looks.seen() : Seen{};
+}
+
+TEST(HardCases, NoFoundMarkIsHeldByAProxyThatIsALittleOff) {
+    // Truth: invariant. Sound runs on triangles and on shapes with a planted fault; the gap that is held is 1 um.
+    const auto sound = [](tick::TickOutput&) {};
+    const auto is_the_device = [](tick::TickOutput& out) { out.X_WG = out.frame.X_WH; };
+    const Seen triangles = seenOf("fin_mesh", sound), shapes = seenOf("fin_cell", sound);
+    EXPECT_EQ(triangles.crossings + triangles.between + triangles.gaps_too_high + triangles.hanging, 0u);
+    EXPECT_GT(triangles.gaps, 10u);
+    EXPECT_LE(std::max(shapes.overlap, shapes.overlap_between), 1e-7);
+    EXPECT_GT(seenOf("fin_mesh", is_the_device).crossings, 100u);
+    EXPECT_GT(seenOf("fin_cell", is_the_device).overlap, 1e-4);
+    const Seen in_triangles = seenOf("fin_mesh", sound, 2e-6), in_shapes = seenOf("fin_cell", sound, 3e-7);
+    EXPECT_GT(in_triangles.crossings, 100u);
+    EXPECT_GT(in_triangles.between, 100u);
+    EXPECT_GT(in_shapes.overlap, 1e-7);
+    EXPECT_GT(in_shapes.overlap_between, 1e-7);
+    EXPECT_GT(seenOf("fin_mesh", [](tick::TickOutput& out) { out.frame.proxy_gap *= 1.05; }).gaps_too_high, 10u);
+    EXPECT_GT(seenOf("fin_mesh", [](tick::TickOutput& out) { out.frame.proxy_gap *= 0.5; }).gaps_loose, 10u);
+    EXPECT_GT(seenOf("fin_mesh", [](tick::TickOutput& out) { out.X_WG.p.z() += 1e-3; }).hanging, 10u);
+    EXPECT_GT(seenOf("fin_mesh", [](tick::TickOutput& out) { out.X_WG.p.z() = NAN; }).not_finite, 1000u);
 }
 
 void pushesHarder(const Spec&, std::vector<Tick>& ticks) {

@@ -11,7 +11,8 @@
 
 namespace passung::hard {
 
-std::string hardScenePath(const std::string& name) { return PASSUNG_HARD_SCENES "/" + name + ".toml"; }
+std::string hardScenePath(const std::string& name) { return hardScenesFile(name + ".toml"); }
+std::string hardScenesFile(const std::string& name) { return PASSUNG_HARD_SCENES "/" + name; }
 
 Result<scene::SceneSpec> readHardScene(const std::string& name) {
     std::vector<DeviceDescription> devices;
@@ -23,7 +24,7 @@ Result<scene::SceneSpec> readHardScene(const std::string& name) {
     return spec;
 }
 
-Result<Run> runScene(const scene::SceneSpec& spec, const Drive& drive, std::int64_t ticks) {
+Result<Run> runScene(const scene::SceneSpec& spec, const Drive& drive, std::int64_t ticks, const Onlooker& look) {
     static scene::PartCache cache;  // methods and seeds of a case share their parts
     const auto scene = scene::buildScene(spec, cache);
     if (!scene) return scene.errors();
@@ -46,6 +47,7 @@ Result<Run> runScene(const scene::SceneSpec& spec, const Drive& drive, std::int6
         const bench::Stopwatch watch;
         output = tick::step(model, state, run.readings.back());
         const double us = 1e6 * watch.seconds();
+        if (look) look(model, state, output);
         const tick::TickFrame& f = output.frame;
         run.ticks.push_back({.device = f.X_WH,
                              .proxy = output.X_WG,

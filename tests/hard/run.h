@@ -39,9 +39,13 @@ using Drive = std::function<DeviceReading(std::int64_t tick, const tick::TickOut
 /// A scene file of tests/hard/scenes, without its ending; registration and start gate as `passung simulate` has them.
 Result<scene::SceneSpec> readHardScene(const std::string& name);
 std::string hardScenePath(const std::string& name);
+std::string hardScenesFile(const std::string& name);  // another file there, with its ending
+
+/// Who looks at more of a tick than a Run keeps; its time does not count.
+using Onlooker = std::function<void(const tick::TickModel&, const tick::TickState&, const tick::TickOutput&)>;
 
 /// Errors: as scene::buildScene.
-Result<Run> runScene(const scene::SceneSpec& spec, const Drive& drive, std::int64_t ticks);
+Result<Run> runScene(const scene::SceneSpec& spec, const Drive& drive, std::int64_t ticks, const Onlooker& look = {});
 
 /// The run's device path as `passung simulate --trajectory` reads it.
 std::string trajectoryCsv(const Run& run);

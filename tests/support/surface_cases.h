@@ -227,41 +227,41 @@ inline Pose turned(double angle, const Vec3& axis, const Vec3& p) {
     return {Quat(Eigen::AngleAxisd(angle, axis.normalized())), p};
 }
 
-inline SurfaceCase blockOnPin() {
-    auto pin = solidMesh(circleLine(0.0005, 256), {0, 0}, -0.01, 0.0);
+inline SurfaceCase blockOnPin(std::uint64_t seed = 1, double diameter = 0.001) {
+    auto pin = solidMesh(circleLine(0.5 * diameter, 256), {0, 0}, -0.01, 0.0);
     return {"block on pin", boxMesh({-.01, -.01, 0}, {.01, .01, .004}), pin,
-            RandomPath({Quat::Identity(), {0, 0, .0005}}, {0, 0, -.003}, {.004, .004, .002}, 0.1, 1)};
+            RandomPath({Quat::Identity(), {0, 0, .0005}}, {0, 0, -.003}, {.004, .004, .002}, 0.1, seed)};
 }
-inline SurfaceCase blockOnFin() {
+inline SurfaceCase blockOnFin(std::uint64_t seed = 2) {
     return {"block on fin", boxMesh({-.01, -.01, 0}, {.01, .01, .004}),
             boxMesh({-.00025, -.02, -.01}, {.00025, .02, 0}),
-            RandomPath({Quat::Identity(), {0, 0, .0005}}, {0, 0, -.003}, {.006, .004, .002}, 0.2, 2)};
+            RandomPath({Quat::Identity(), {0, 0, .0005}}, {0, 0, -.003}, {.006, .004, .002}, 0.2, seed)};
 }
-inline SurfaceCase cubeOnCorner() {
+inline SurfaceCase cubeOnCorner(std::uint64_t seed = 3) {
     const Pose up{Quat::FromTwoVectors(Vec3(1, 1, 1), Vec3::UnitZ()), {0, 0, -.01 * std::sqrt(3.0)}};
     return {"block on a cube's corner", boxMesh({-.01, -.01, 0}, {.01, .01, .004}),
             placed(boxMesh({-.01, -.01, -.01}, {.01, .01, .01}), up),
-            RandomPath({Quat::Identity(), {0, 0, .0005}}, {0, 0, -.003}, {.006, .006, .002}, 0.2, 3)};
+            RandomPath({Quat::Identity(), {0, 0, .0005}}, {0, 0, -.003}, {.006, .006, .002}, 0.2, seed)};
 }
-inline SurfaceCase needleInSlit() {
+inline SurfaceCase needleInSlit(std::uint64_t seed = 4) {
     auto slit = boxMesh({-.02, -.01, -.02}, {-.00055, .01, 0});
     append(slit, boxMesh({.00055, -.01, -.02}, {.02, .01, 0}));
     auto needle = solidMesh(circleLine(0.0005, 128), {0, 0}, 0, .03);
     return {"needle in slit", needle, slit,
-            RandomPath({Quat::Identity(), {0, 0, -.002}}, {0, 0, -.006}, {.002, .004, .003}, 0.15, 4)};
+            RandomPath({Quat::Identity(), {0, 0, -.002}}, {0, 0, -.006}, {.002, .004, .003}, 0.15, seed)};
 }
-inline SurfaceCase ringInRing() {
+inline SurfaceCase ringInRing(std::uint64_t seed = 5) {
     return {"ring in ring", tubeMesh(circleLine(.007, 180), circleLine(.0099, 180), -.004, .004),
             tubeMesh(circleLine(.01, 144), circleLine(.013, 144), -.003, .003),
-            RandomPath({Quat::Identity(), {0, 0, 0}}, {0, 0, 0}, {.002, .002, .003}, 0.15, 5), 1500};
+            RandomPath({Quat::Identity(), {0, 0, 0}}, {0, 0, 0}, {.002, .002, .003}, 0.15, seed), 1500};
 }
-inline SurfaceCase gearInGear() {
+inline SurfaceCase gearInGear(std::uint64_t seed = 6) {
     const auto outer = circleLine(.016, 16 * 20);
     return {"gear in gear", solidMesh(gearLine(.01, .002, 20, -5e-5), {0, 0}, -.002, .006),
             tubeMesh(gearLine(.01, .002, 20, 5e-5), outer, -.004, .004),
-            RandomPath({Quat::Identity(), {0, 0, 0}}, {0, 0, 0}, {.001, .001, .004}, 0.1, 6)};
+            RandomPath({Quat::Identity(), {0, 0, 0}}, {0, 0, 0}, {.001, .001, .004}, 0.1, seed)};
 }
-inline SurfaceCase dovetail() {
+inline SurfaceCase dovetail(std::uint64_t seed = 7) {
     const double play = 5e-5;
     auto rail = placed(solidMesh({{-.006, -.003}, {.006, -.003}, {.004, .003}, {-.004, .003}}, {0, 0}, -.015, .015),
                        turned(std::numbers::pi / 2, {1, 0, 0}, {0, 0, 0}));
@@ -274,7 +274,7 @@ inline SurfaceCase dovetail() {
     wall({{-.02, -.003 - p}, {-.02, -.01}, {.02, -.01}, {.02, -.003 - p}});
     wall({{-.02, -.003 - p}, {-.006 - p, -.003 - p}, {-.004 - p, .003}, {-.02, .003}});
     wall({{.02, -.003 - p}, {.02, .003}, {.004 + p, .003}, {.006 + p, -.003 - p}});
-    return {"dovetail", rail, slot, RandomPath({}, {0, 0, .001}, {.002, .006, .003}, 0.1, 7)};
+    return {"dovetail", rail, slot, RandomPath({}, {0, 0, .001}, {.002, .006, .003}, 0.1, seed)};
 }
 inline SurfaceCase spinningBar() {
     return {"spinning bar", boxMesh({-.03, -.003, -.003}, {.03, .003, .003}),
@@ -284,21 +284,21 @@ inline SurfaceCase spinningBar() {
             },
             1000};
 }
-inline SurfaceCase ballOnSheet() {
+inline SurfaceCase ballOnSheet(std::uint64_t seed = 8) {
     return {"bumpy ball on open sheet", bumpyMesh(.01, 40, 0.3), sheetMesh(.04, 40, .0005),
-            RandomPath({Quat::Identity(), {0, 0, .0075}}, {0, 0, -.004}, {.008, .008, .003}, 0.3, 8)};
+            RandomPath({Quat::Identity(), {0, 0, .0075}}, {0, 0, -.004}, {.008, .008, .003}, 0.3, seed)};
 }
-inline SurfaceCase blockOnSeams() {
+inline SurfaceCase blockOnSeams(std::uint64_t seed = 9) {
     return {"block on a mesh with T-junctions", boxMesh({-.004, -.004, 0}, {.004, .004, .008}),
             seamedMesh({-.01, -.01, -.01}, {.01, .01, 0}, 12),
-            RandomPath({Quat::Identity(), {0, 0, .0003}}, {0, 0, -.002}, {.008, .008, .002}, 0.2, 9)};
+            RandomPath({Quat::Identity(), {0, 0, .0003}}, {0, 0, -.002}, {.008, .008, .002}, 0.2, seed)};
 }
-inline SurfaceCase scanOnScan(double size, int n) {
+inline SurfaceCase scanOnScan(double size, int n, std::uint64_t seed = 10) {
     return {"scan on scan " + std::to_string(int(1e3 * size)) + " mm", bumpyMesh(size, n, 0.3), bumpyMesh(size, n, 1.7),
             RandomPath({Quat::Identity(), {0, 0, 1.25 * size}}, {0, 0, -.35 * size}, {.3 * size, .3 * size, .2 * size},
-                       0.4, 10, std::min(1.0, .03 / size))};
+                       0.4, seed, std::min(1.0, .03 / size))};
 }
-inline SurfaceCase keyedShaft() {
+inline SurfaceCase keyedShaft(std::uint64_t seed = 11) {
     const double play = 8e-6;  // each side
     const auto line = [](double r, double deep) {
         Profile2 profile;
@@ -316,9 +316,9 @@ inline SurfaceCase keyedShaft() {
     for (const auto& p : line(.01, .002)) outer.push_back(2.0 * p);
     return {"keyed shaft", solidMesh(line(.01 - play, .002), {0, 0}, -.01, .02),
             tubeMesh(line(.01, .002), outer, -.008, .008),
-            RandomPath({Quat::Identity(), {0, 0, 0}}, {0, 0, 0}, {.0008, .0008, .008}, 0.05, 11), 2000};
+            RandomPath({Quat::Identity(), {0, 0, 0}}, {0, 0, 0}, {.0008, .0008, .008}, 0.05, seed), 2000};
 }
-inline SurfaceCase dShaft() {
+inline SurfaceCase dShaft(std::uint64_t seed = 12) {
     const auto line = [](double wider) {
         Profile2 profile;
         for (int i = 0; i <= 64; ++i) {
@@ -330,7 +330,7 @@ inline SurfaceCase dShaft() {
     Profile2 outer;
     for (const auto& p : line(0)) outer.push_back(2.0 * p);
     return {"D-shaped peg", solidMesh(line(-5e-5), {0, 0}, -.01, .01), tubeMesh(line(0), outer, -.006, .006),
-            RandomPath({Quat::Identity(), {0, 0, 0}}, {0, 0, 0}, {.001, .001, .004}, 0.08, 12)};
+            RandomPath({Quat::Identity(), {0, 0, 0}}, {0, 0, 0}, {.001, .001, .004}, 0.08, seed)};
 }
 
 inline std::vector<SurfaceCase> surfaceCases() {

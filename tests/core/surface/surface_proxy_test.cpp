@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <optional>
 
 #include "tests/support/mesh_crossing.h"
 #include "tests/support/rt_guard.h"
@@ -132,6 +133,35 @@ TEST(SurfaceProxy, AllocatesNothingAndIsTheSameEveryTime) {
         EXPECT_EQ(guard.violations(), 0) << guard.describe();
     }
 }
+
+#if defined(__x86_64__) && defined(__GNUC__)
+/// Are upper halves of vector registers in use? Nothing where the processor does not tell.
+std::optional<bool> upperHalvesInUse() {
+    if (!__builtin_cpu_supports("avx2")) return {};
+    unsigned a = 0xd, b = 0, c = 1, d = 0;  // leaf of the extended state: bit 2, xgetbv tells what is in use
+    __asm__ volatile("cpuid" : "+a"(a), "=b"(b), "+c"(c), "=d"(d));
+    if (!(a & 4u)) return {};
+    unsigned low = 0, high = 0;
+    __asm__ volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(1));
+    return (low & 4u) != 0;
+}
+
+TEST(SurfaceProxy, LeavesNoUpperHalvesOfRegistersInUse) {
+    // Truth: the processor's own account of its state. In use, they make all other code of the thread slower.
+    const test::SurfaceCase scene = test::blockOnFin();
+    const ClusterTree held(scene.held), obstacle(scene.obstacle);
+    SurfaceProxy proxy(held, obstacle, {.metric_radius = 0.02});
+    proxy.place(scene.hand(0.0));
+    proxy.prepare();
+    if (!upperHalvesInUse()) GTEST_SKIP() << "the processor does not tell";
+    int in_use = 0;
+    for (int tick = 0; tick < 1000; ++tick) {
+        proxy.advance(scene.hand(1e-3 * tick));
+        in_use += *upperHalvesInUse();
+    }
+    EXPECT_EQ(in_use, 0);
+}
+#endif
 
 TEST(SurfaceProxy, AnyBudgetKeepsItOut) {
     // Truth: independent oracle (mesh_crossing.h): whatever work is left for the next tick, nothing crosses.
