@@ -65,7 +65,7 @@ endfunction()
 
 # Rooms in which nothing is hot: they wait for files and people, or are as fast so; -O1 compiles them in half the time.
 set(PASSUNG_COLD_OPTIONS $<$<NOT:$<CONFIG:Debug>>:-O1>)
-set(PASSUNG_COLD_ROOMS "^(core/scene|devices/.*|analysis/(export|power|stats)|study/(design|plan|protocol|run|session|store/(schema|rows|read|write|people|transfer))|ui/.*)$")
+set(PASSUNG_COLD_ROOMS "^(core/scene|devices/.*|analysis/(accuracy|export|power|stats|tick_accuracy)|study/(design|plan|protocol|run|session|store/(schema|rows|read|write|people|transfer))|ui/.*)$")
 
 # Rooms that the tick runs stay in many pieces, so that an edit there is tested soon; with PASSUNG_TICK_ONE_PIECE, as the
 # preset `program` has it for who only runs it, they do not.
