@@ -19,7 +19,7 @@ namespace passung {
 namespace {
 
 /// The number to which the hashes below belong.
-constexpr int kHashedNumerics = 2;
+constexpr int kHashedNumerics = 3;
 
 /// The mathematics library's own bits, which differ between its versions and between processors. Where they do, these
 /// hashes say nothing.
@@ -48,7 +48,7 @@ const Golden kGolden[] = {
 constexpr std::uint64_t kEveryEffect = 0x9ba5816cee9eacb6u;
 
 /// The same without friction, on closed forms.
-constexpr std::uint64_t kClosedForm = 0xfefdbd210bee1149u;
+constexpr std::uint64_t kClosedForm = 0x931a1799e28da909u;
 
 constexpr const char* kParts = R"(
 [[part]]
