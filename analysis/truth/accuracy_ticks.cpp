@@ -196,8 +196,8 @@ void judgeForce(const Shown& shown, const std::vector<std::size_t>& ticks, const
     std::vector<std::pair<Vec3, Vec3>> pairs;  // felt, true
     double largest = 0.0;
     for (const std::size_t i : ticks) {
-        if (i == 0 || !shown.usable[i - 1]) continue;
-        const auto force = truth.at(shown.X_WG[i - 1], shown.X_WH[i]);
+        const std::size_t last = i > 0 && shown.usable[i - 1] ? i - 1 : i;
+        const auto force = truth.at(shown.X_WG[last], shown.X_WH[i]);
         if (!force) continue;
         pairs.emplace_back(shown.force[i], *force);
         largest = std::max(largest, force->norm());

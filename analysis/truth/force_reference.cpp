@@ -13,7 +13,7 @@ ForceReference::ForceReference(const scene::SceneSpec& scene) {
     rho_ = std::sqrt(contact.rotational_stiffness / contact.stiffness);
     const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const auto& part) { return part.held; });
     const auto* shape = held == scene.parts.end() ? nullptr : std::get_if<shape::Shape>(&held->geometry);
-    std::vector<Placed> obstacles;
+    std::vector<PlacedShape> obstacles;
     for (const scene::PartSpec& part : scene.parts) {
         if (part.held) continue;
         if (part.friction > 0.0 && held->friction > 0.0) {
@@ -41,8 +41,11 @@ ForceReference::ForceReference(const scene::SceneSpec& scene) {
 }
 
 std::optional<Vec3> ForceReference::at(const Pose& X_WG_last, const Pose& X_WH) const {
-    // A ball's turn changes nothing.
-    const auto found = leastEnergyFrom(*separation_, rho_ > 0.0 ? rho_ : 1.0, X_WG_last, X_WH);
+    const double rho = rho_ > 0.0 ? rho_ : 1.0;  // a ball's turn changes nothing
+    // What was shown may overlap: then from the nearest pose that does not.
+    const auto free = leastEnergyFrom(*separation_, rho, X_WG_last, X_WG_last);
+    if (!free) return std::nullopt;
+    const auto found = leastEnergyFrom(*separation_, rho, free->X, X_WH);
     if (!found || found->way > kSnap) return std::nullopt;
     return Vec3(stiffness_ * (found->X.p - X_WH.p));
 }

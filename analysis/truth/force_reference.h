@@ -24,9 +24,9 @@ public:
     /// Why the scene has none, in one clause; empty if it has one.
     const std::string& missing() const { return missing_; }
 
-    /// On the hand [N], world axes, from the proxy of the tick before on. Nothing where the pair's case does not hold,
-    /// or where the way from that proxy is longer than kSnap: past an edge the pose of least energy depends on how far
-    /// one went.
+    /// On the hand [N], world axes, from the proxy of the tick before on, or the nearest free pose. Nothing where the
+    /// pair's case does not hold, or where the way from that proxy is longer than kSnap: past an edge the pose of least
+    /// energy depends on how far one went.
     std::optional<Vec3> at(const Pose& X_WG_last, const Pose& X_WH) const;
 
     /// Of the pose in one tick [m], |(Δx, ρ Δφ)|.

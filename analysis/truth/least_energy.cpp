@@ -15,8 +15,8 @@ constexpr int kMostTurns = 300;    // of the dual problem
 constexpr int kMostSteps = 250;    // towards the pose of least energy
 constexpr double kStep = 2.5e-4;   // most of one step [m]
 constexpr double kReach = 6e-4;    // of rows [m]
-constexpr double kAtRest = 1e-8;   // of a step [m]
-constexpr double kNearby = 5e-7;   // rows of a pose that is so near hold [m]
+constexpr double kAtRest = 2e-9;   // of a step [m]
+constexpr double kNearby = 1e-7;   // rows of a pose that is so near hold [m]
 constexpr double kHeld = 2e-6;     // of a row's gap after a step [m]
 constexpr double kOverlap = 1e-9;  // at rest [m]
 

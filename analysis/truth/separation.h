@@ -32,22 +32,22 @@ public:
 };
 
 /// What stands in the world.
-using Placed = std::pair<shape::Shape, Pose>;
+using PlacedShape = std::pair<shape::Shape, Pose>;
 
 /// A ball among balls, boxes, bars and pegs, by the exact signed distance of its centre; null for other pairs.
-std::unique_ptr<Separation> separationOfBall(const shape::Shape& held, std::span<const Placed> obstacles);
+std::unique_ptr<Separation> separationOfBall(const shape::Shape& held, std::span<const PlacedShape> obstacles);
 
 /// A round peg and a plate with a round bore. The plate's material about the bore is the union, over all angles φ, of
 /// what lies beyond the tangent planes of wall and mouth at φ: prisms along the tangent, so that each gap is one of two
 /// plane figures, the prism's corner and the peg's shadow. Least gaps over φ are found to the last digits, and angles
 /// between stand beside them. Not the case: the peg's tip reaches the plate's outer sides. Null for other pairs.
-std::unique_ptr<Separation> separationOfPeg(const shape::Shape& held, std::span<const Placed> obstacles);
+std::unique_ptr<Separation> separationOfPeg(const shape::Shape& held, std::span<const PlacedShape> obstacles);
 
 /// Boxes, square pegs and plates with a square pocket, which are unions of convex polyhedra: the best axis among the
 /// normals of both parts' faces and the products of their edges. Null for other pairs.
-std::unique_ptr<Separation> separationOfPolyhedra(const shape::Shape& held, std::span<const Placed> obstacles);
+std::unique_ptr<Separation> separationOfPolyhedra(const shape::Shape& held, std::span<const PlacedShape> obstacles);
 
 /// The one of the above that knows the pair; null if none does.
-std::unique_ptr<Separation> separationOf(const shape::Shape& held, std::span<const Placed> obstacles);
+std::unique_ptr<Separation> separationOf(const shape::Shape& held, std::span<const PlacedShape> obstacles);
 
 }  // namespace passung::truth

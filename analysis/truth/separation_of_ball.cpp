@@ -24,9 +24,9 @@ Vec3 gradientAt(const shape::Shape& shape, const Vec3& p) {
     return gradient.normalized();
 }
 
-class Ball : public Separation {
+class BallAmongSolids : public Separation {
 public:
-    Ball(double radius, std::span<const Placed> obstacles)
+    BallAmongSolids(double radius, std::span<const PlacedShape> obstacles)
         : radius_(radius), solids_(obstacles.begin(), obstacles.end()) {}
 
     bool rowsAt(const Pose& X_WG, double, double reach, std::vector<FreedomRow>& rows) const override {
@@ -42,20 +42,20 @@ public:
 
 private:
     double radius_;
-    std::vector<Placed> solids_;
+    std::vector<PlacedShape> solids_;
 };
 
 }  // namespace
 
-std::unique_ptr<Separation> separationOfBall(const shape::Shape& held, std::span<const Placed> obstacles) {
+std::unique_ptr<Separation> separationOfBall(const shape::Shape& held, std::span<const PlacedShape> obstacles) {
     const auto* ball = std::get_if<shape::Sphere>(&held);
     if (ball == nullptr || !std::all_of(obstacles.begin(), obstacles.end(),
-                                        [](const Placed& solid) { return isWithoutHollows(solid.first); }))
+                                        [](const PlacedShape& solid) { return isWithoutHollows(solid.first); }))
         return nullptr;
-    return std::make_unique<Ball>(0.5 * ball->diameter, obstacles);
+    return std::make_unique<BallAmongSolids>(0.5 * ball->diameter, obstacles);
 }
 
-std::unique_ptr<Separation> separationOf(const shape::Shape& held, std::span<const Placed> obstacles) {
+std::unique_ptr<Separation> separationOf(const shape::Shape& held, std::span<const PlacedShape> obstacles) {
     for (const auto make : {separationOfBall, separationOfPeg, separationOfPolyhedra})
         if (auto separation = make(held, obstacles)) return separation;
     return nullptr;

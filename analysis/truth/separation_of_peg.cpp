@@ -23,7 +23,7 @@ struct Corner {
 };
 
 /// A circle of the peg, seen along the tangent.
-struct Ring {
+struct PegCircle {
     double s, z, radius;
 };
 
@@ -54,7 +54,7 @@ public:
         const double across = std::sqrt(std::max(0.0, 1.0 - along * along));
         const double across_slope = across > 0.0 ? -along * along_slope / across : 0.0;
         Line held{std::numeric_limits<double>::infinity(), 0.0}, fixed{-held.value, 0.0};
-        for (const Ring& ring : rings_) {
+        for (const PegCircle& ring : rings_) {
             const double value = -c * ring.s + s * ring.z - ring.radius * across;
             if (value < held.value) held = {value, s * ring.s + c * ring.z - ring.radius * across_slope};
         }
@@ -179,7 +179,7 @@ private:
 
     Vec3 out_;
     double axis_s_, axis_z_;
-    std::array<Ring, 3> rings_;
+    std::array<PegCircle, 3> rings_;
     std::array<Corner, 3> corners_;
     Vec3 axis_;
     std::array<Vec3, 3> centres_;
@@ -290,7 +290,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Separation> separationOfPeg(const shape::Shape& held, std::span<const Placed> obstacles) {
+std::unique_ptr<Separation> separationOfPeg(const shape::Shape& held, std::span<const PlacedShape> obstacles) {
     const auto* peg = std::get_if<shape::Peg>(&held);
     if (peg == nullptr || obstacles.size() != 1) return nullptr;
     const auto* plate = std::get_if<shape::BorePlate>(&obstacles.front().first);

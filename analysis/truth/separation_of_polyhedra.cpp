@@ -224,7 +224,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Separation> separationOfPolyhedra(const shape::Shape& held, std::span<const Placed> obstacles) {
+std::unique_ptr<Separation> separationOfPolyhedra(const shape::Shape& held, std::span<const PlacedShape> obstacles) {
     const auto body = heldOf(held);
     if (!body) return nullptr;
     std::vector<Polyhedron> fixed;

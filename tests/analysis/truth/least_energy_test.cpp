@@ -13,7 +13,7 @@ namespace {
 const double kRho = std::sqrt(1.0 / 2000.0);  // [m]
 
 std::unique_ptr<Separation> between(const shape::Shape& held, const shape::Shape& fixed, const Pose& X_WF = {}) {
-    const Placed placed{fixed, X_WF};
+    const PlacedShape placed{fixed, X_WF};
     return separationOf(held, {&placed, 1});
 }
 

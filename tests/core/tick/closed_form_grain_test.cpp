@@ -81,6 +81,7 @@ TEST(ClosedFormGrain, PathsAlongWhichItWasWrongAreFollowed) {
         {"corners of what lies flat were found one after the other, in vain", 3, 4, 4001},
         {"the same where one edge is round", 0, 4, 4001},
         {"an obstacle's vertex under an edge", 5, 0, 14},
+        {"a ridge where two edges pass each other", 0, 4, 4014},
     };
     const auto known = pairs();
     for (const Found& found : all_found) {

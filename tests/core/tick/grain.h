@@ -59,7 +59,7 @@ struct Kind {
 struct Pair {
     std::string name;
     shape::Shape held;
-    std::vector<truth::Placed> obstacles;
+    std::vector<truth::PlacedShape> obstacles;
     Vec3 start;
     std::vector<Kind> kinds;
     double bore = 0.0;  // depth of the tip from which on it is in a bore [m]; 0: there is none
