@@ -196,7 +196,8 @@ void judgeForce(const Shown& shown, const std::vector<std::size_t>& ticks, const
     std::vector<std::pair<Vec3, Vec3>> pairs;  // felt, true
     double largest = 0.0;
     for (const std::size_t i : ticks) {
-        const auto force = truth.at(shown.X_WG[i], shown.X_WH[i]);
+        const std::size_t last = i > 0 && shown.usable[i - 1] ? i - 1 : i;
+        const auto force = truth.at(shown.X_WG[last], shown.X_WH[i]);
         if (!force) continue;
         pairs.emplace_back(shown.force[i], *force);
         largest = std::max(largest, force->norm());
@@ -327,7 +328,6 @@ Result<TickAccuracy> measureTicks(const scene::SceneSpec& scene, std::span<const
     spec.start_gate = {};
     const ForceReference reference(spec);
     if (!reference.missing().empty()) result.notes.push_back("no force to compare with: " + reference.missing());
-    result.reference_uncertainty = reference.uncertainty();
     scene::PartCache cache(store);
     OverlapBodies bodies(chordFor(scene));
     for (std::size_t i = 0; i < settings.size(); ++i) {

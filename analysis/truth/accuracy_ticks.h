@@ -74,8 +74,7 @@ struct TickEffort {
 
 struct TickAccuracy {
     std::vector<PathCost> rows;
-    double reference_uncertainty = 0.0;  // of its force [N]
-    std::vector<std::string> notes;      // why forces were not compared
+    std::vector<std::string> notes;  // why forces were not compared
 };
 
 /// Runs the scene along `path` (the held part in the world, one pose a millisecond; nan: a broken sensor) with every

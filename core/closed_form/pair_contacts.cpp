@@ -15,11 +15,13 @@ Mat3 crossMatrix(const Vec3& v) noexcept {
     return m;
 }
 
-/// The line in the frame of the solid that it meets.
+/// The line in the frame of the solid that it meets, without its faces.
 Curve moved(const Pose& X, const Curve& line) noexcept {
-    Curve there = line;
-    there.centre = X * line.centre;
-    there.e1 = X.q * line.e1;
+    Curve there{.kind = line.kind,
+                .centre = X * line.centre,
+                .e1 = X.q * line.e1,
+                .end = line.end,
+                .thickness = line.thickness};
     if (line.kind == Curve::Kind::Circle) there.e2 = X.q * line.e2;
     return there;
 }
@@ -31,6 +33,7 @@ struct LineView {
     Curve line;   // in S
     Vec3 origin;  // of the held part, in S
     double sign;  // of what a motion of the held part does to the gap: 1 if the line moves, -1 if the lump does
+    Quat line_q;  // of the line's part, in S
 };
 
 const Curve& lineOf(const SolidPair& pair, const TouchName& name) noexcept {
@@ -42,9 +45,10 @@ LineView viewOf(const SolidPair& pair, const Pose& X_WH, const TouchName& name) 
     const Curve& line = lineOf(pair, name);
     if (name.of_held) {
         const Pose X_OH = pair.X_WO.inverse() * X_WH;
-        return {pair.X_WO.q.toRotationMatrix(), pair.X_WO.p, moved(X_OH, line), X_OH.p, 1.0};
+        return {pair.X_WO.q.toRotationMatrix(), pair.X_WO.p, moved(X_OH, line), X_OH.p, 1.0, X_OH.q};
     }
-    return {X_WH.q.toRotationMatrix(), X_WH.p, moved(X_WH.inverse() * pair.X_WO, line), Vec3::Zero(), -1.0};
+    const Pose X_HO = X_WH.inverse() * pair.X_WO;
+    return {X_WH.q.toRotationMatrix(), X_WH.p, moved(X_HO, line), Vec3::Zero(), -1.0, X_HO.q};
 }
 
 const Lump& lumpOf(const SolidPair& pair, const TouchName& name) noexcept {
@@ -65,6 +69,32 @@ motion::Motion inWorld(const LineView& view, double rho, const motion::Motion& m
     return w;
 }
 
+/// An edge of a convex piece touches with normals between those of its two sides, its end with those between three
+/// faces. A place on it that something else would have to hold lies in the other part's way, but what touches there is
+/// another line: the edge's own row is implied by that one's, and where two edges are nearly parallel its normal is
+/// any. `outward`: what would have to be between them, in the line's frame.
+double leanOf(const Curve& own, const Touch& touch, const Vec3& outward) noexcept {
+    if (!own.sides || own.kind == Curve::Kind::Point) return 0.0;
+    const Vec3 p = pointOf(own, touch.t), t = slopeOf(own, touch.t).normalized();
+    const Vec3 a = gradientOf((*own.sides)[0], p), b = gradientOf((*own.sides)[1], p);
+    const double turn = a.cross(b).dot(t);
+    Vec3 n = outward, c = t;
+    double beyond = 0.0;  // of the third face
+    if (own.kind == Curve::Kind::Straight && touch.kind == Touch::Kind::Fixed) {
+        const bool low = touch.t <= -own.end, at_end = low || touch.t >= own.end;
+        const std::optional<Face>& cap = own.caps[low ? 0 : 1];
+        if (at_end && !cap) return 0.0;
+        if (at_end) {
+            c = gradientOf(*cap, p);
+            beyond = -t.dot(n) / t.dot(c);
+        }
+    }
+    n -= t.dot(n) / t.dot(c) * c;
+    // n = α a + β b.
+    const double alpha = n.cross(b).dot(t) / turn, beta = a.cross(n).dot(t) / turn;
+    return std::max({0.0, -alpha * std::abs(turn), -beta * std::abs(turn), beyond});
+}
+
 Contact contactOf(const SolidPair& pair, const LineView& view, const TouchName& name, const Touch& touch) noexcept {
     Contact contact;
     contact.name = name;
@@ -81,6 +111,11 @@ Contact contactOf(const SolidPair& pair, const LineView& view, const TouchName& 
     contact.point = view.R_WS * p + view.p_WS;
     contact.normal = view.R_WS * (view.sign * gradient);
     contact.a = inWorld(view, pair.metric_radius, slopeBy(view, p - view.origin, gradient));
+    if (!name.core) {
+        const SmoothSolid& lines = name.of_held ? *pair.held : *pair.obstacle;
+        const Vec3 outward = view.line_q.conjugate() * Vec3(-gradient);
+        contact.lean = leanOf(lines.edges[name.line], touch, outward.normalized());
+    }
     return contact;
 }
 
@@ -155,8 +190,8 @@ struct PlacedPair {
 
     LineView view(const TouchName& name) const noexcept {
         const Curve& line = lineOf(pair, name);
-        if (name.of_held) return {R_WO, pair.X_WO.p, moved(X_OH, line), X_OH.p, 1.0};
-        return {R_WH, X_WH.p, moved(X_HO, line), Vec3::Zero(), -1.0};
+        if (name.of_held) return {R_WO, pair.X_WO.p, moved(X_OH, line), X_OH.p, 1.0, X_OH.q};
+        return {R_WH, X_WH.p, moved(X_HO, line), Vec3::Zero(), -1.0, X_HO.q};
     }
 
     const SolidPair& pair;
@@ -250,21 +285,23 @@ void ContactSearch::look(const PlacedPair& placed, double reach, bool closely, M
     for (const Touch& touch : touches.all()) take(contactOf(pair_, view, name, touch));
 }
 
-Contact atPose(const SolidPair& pair, const Pose& X_WH, const Contact& contact) noexcept {
+std::optional<Contact> keptAt(const SolidPair& pair, const Pose& X_WH, const Contact& contact) noexcept {
+    constexpr double kEqual = 1e-9;        // [m]
+    constexpr double kSameNormal = 0.005;  // [rad]
     const LineView view = viewOf(pair, X_WH, contact.name);
-    const Contact there = contactOf(pair, view, contact.name, contact.touch);
-    const std::vector<Face>& faces = lumpOf(pair, contact.name).faces;
+    const Lump& lump = lumpOf(pair, contact.name);
     const Vec3 p = pointOf(view.line, contact.touch.t);
-    std::size_t highest = 0;
-    for (std::size_t i = 1; i < faces.size(); ++i)
-        if (valueOf(faces[i], p) > valueOf(faces[highest], p)) highest = i;
-    if (!(valueOf(faces[highest], p) - view.line.thickness > there.gap + kSameFaces)) return there;
-    Touch other = contact.touch;
-    other.kind = Touch::Kind::Fixed;
-    other.a = static_cast<std::uint8_t>(highest);
-    other.b = Touch::kNone;
-    other.share = 1.0;
-    return contactOf(pair, view, contact.name, other);
+    Touch touch = contact.touch;
+    if (touch.b != Touch::kNone) {
+        if (valueOf(lump.faces[touch.b], p) > valueOf(lump.faces[touch.a], p)) touch.a = touch.b;
+        touch.b = Touch::kNone;
+        touch.share = 1.0;
+        touch.kind = Touch::Kind::Fixed;
+    }
+    if (valueOf(lump, p) > valueOf(lump.faces[touch.a], p) + kEqual) return std::nullopt;
+    const Contact now = contactOf(pair, view, contact.name, touch);
+    if (contact.touch.b != Touch::kNone && (now.normal - contact.normal).norm() > kSameNormal) return std::nullopt;
+    return now;
 }
 
 MotionMatrix curvatureOf(const SolidPair& pair, const Pose& X_WH, const Contact& contact, bool slides) noexcept {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/closed_form/touch_search.h"
@@ -27,6 +28,7 @@ struct Contact {
     Vec3 point = Vec3::Zero();                  // on the line, world [m]
     Vec3 normal = Vec3::Zero();                 // away from the obstacle, world; of a kink not of length 1
     motion::Motion a = motion::Motion::Zero();  // (n, r × n / ρ)
+    double lean = 0.0;  // by which the normal leaves those that the line's own edge can have [rad]; 0: a contact
 };
 
 /// Contacts of a pair at one pose. Full: an overlap may be unknown.
@@ -92,10 +94,10 @@ private:
     double way_ = 0.0, turn_ = 0.0;  // that the held part has made [m], [rad]
 };
 
-/// The contact that the same place of the line makes at another pose. With the same faces, unless another one is higher
-/// there by more than kSameFaces: outside one face is enough, so that the others are no obstacle any more. rt-safe.
-inline constexpr double kSameFaces = 1e-6;  // [m]
-Contact atPose(const SolidPair& pair, const Pose& X_WH, const Contact& contact) noexcept;
+/// What the place of a contact that was found at an earlier pose has to obey at this one: the row of the lump's highest
+/// face there. Nothing where that is another face than the contact's, so that nothing holds there any more, and for a
+/// kink whose normal that face has not: it lay there for a moment only, and its row would hold what is free. rt-safe.
+std::optional<Contact> keptAt(const SolidPair& pair, const Pose& X_WH, const Contact& contact) noexcept;
 
 /// H of a contact, as X_WH has it. Where the contact moves along its line as the parts move (`slides`), that is
 /// eliminated: of a smooth minimum H - f_tu f_tuᵀ / f_tt, of a kink with the 2 × 2 system of t and the faces' shares.

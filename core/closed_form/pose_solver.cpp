@@ -15,7 +15,10 @@ namespace {
 constexpr double kReach = 1e-3;          // within which contacts become rows: no point goes farther in a look [m]
 constexpr double kSamePlace = 0.5;       // of a line's parameter: a contact that held is that one now
 constexpr int kMostTaken = 60;           // rows taken up or let go in a look
+constexpr double kAlongRidge = 0.3;      // of a unit motion: what contacts leave of it
+constexpr double kOffRidge = 4e-6;       // [m]
 constexpr double kRowTolerance = 1e-12;  // [m]
+constexpr double kMostLean = 0.02;       // [rad]
 
 motion::Motion wayTo(const Pose& X_WG, const Pose& X_WH, double rho) noexcept {
     motion::Motion w;
@@ -64,8 +67,9 @@ void PoseSolver::find(const Pose& X) noexcept {
         overlap_ = std::max(overlap_, overlapOf(contacts_));
         full_ = full_ || contacts_.full();
         for (const Contact& contact : contacts_.all())
-            add({.from = {.contact = contact, .pair = static_cast<std::uint16_t>(p)},
-                 .slides = contact.touch.kind != Touch::Kind::Fixed});
+            if (contact.lean <= kMostLean)
+                add({.from = {.contact = contact, .pair = static_cast<std::uint16_t>(p)},
+                     .slides = contact.touch.kind != Touch::Kind::Fixed});
     }
     found_ = count_;
 }
@@ -97,18 +101,21 @@ void PoseSolver::remember(const Pose& X, const PoseMemory& memory) noexcept {
         Row* now = successorOf(old);
         if (now != nullptr) now->from.push += old.push;
         if ((now != nullptr && distance(now->from.contact, old) < kSameTouch) || old.age >= kKeptLooks) continue;
+        const auto there = keptAt(pair(old.pair), X, old.contact);
+        if (!there || there->gap >= kReach || there->lean > kMostLean) continue;
         Row kept{.from = old, .slides = false};
-        kept.from.contact = atPose(pair(old.pair), X, old.contact);
+        kept.from.contact = *there;
         kept.from.age = old.age + 1;
         if (now != nullptr) kept.from.push = 0.0;
-        if (kept.from.contact.gap < kReach) add(kept);
+        add(kept);
     }
 }
 
 /// B = L Lᵀ. False: it is 1, nothing bends it.
-bool PoseSolver::factor(const Pose& X, MotionMatrix& L) const noexcept {
+bool PoseSolver::factor(const Pose& X, MotionMatrix& L) noexcept {
     MotionMatrix B = MotionMatrix::Identity();
     bool bent = false;
+    ridge_ = motion::Motion::Zero();
     for (std::size_t i = 0; i < count_; ++i) {
         const HeldContact& from = rows_[i].from;
         if (!(from.push > 0.0)) continue;
@@ -123,6 +130,7 @@ bool PoseSolver::factor(const Pose& X, MotionMatrix& L) const noexcept {
         return true;
     }
     Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(B);
+    if (eigen.eigenvalues()[0] < 0.0) ridge_ = eigen.eigenvectors().col(0);
     const motion::Motion values = eigen.eigenvalues().cwiseMax(kLeastStiffness);
     B = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
     L = Eigen::LLT<MotionMatrix>(B).matrixL();
@@ -193,6 +201,17 @@ motion::Motion PoseSolver::shortened(const motion::Motion& u) const noexcept {
     return std::min(1.0, std::max(share, free_ / way)) * u;
 }
 
+/// Where the energy has no minimum but a ridge, as where two edges pass each other: off it, the way that the tick went.
+motion::Motion PoseSolver::offRidge(const motion::Motion& way, const PoseMemory& memory) const noexcept {
+    motion::Motion v = ridge_;
+    if (v.squaredNorm() == 0.0) return v;
+    for (int round = 0; round < 8; ++round)
+        for (const HeldContact& held : memory.all())
+            v -= v.dot(held.contact.a) / held.contact.a.squaredNorm() * held.contact.a;
+    if (v.norm() < kAlongRidge) return motion::Motion::Zero();
+    return (v.dot(way) < 0.0 ? -kOffRidge : kOffRidge) * v.normalized();
+}
+
 ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most) noexcept {
     ConstrainedPose result{.X_WG = X_WG};
     way_.clear();
@@ -200,6 +219,7 @@ ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory
     Pose X = X_WG;
     double last = std::numeric_limits<double>::infinity();  // length of the last look's motion
     double astray = 0.0;                                    // of the motions since the last pose that counts
+    bool left = false;                                      // a ridge
     for (int i = 0;; ++i) {
         find(X);
         const motion::Motion wanted = wayTo(X, X_WH, rho);
@@ -219,7 +239,12 @@ ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory
         remember(X, memory);
         const bool back = !kept && astray > kMostAstray;
         PoseMemory aside = memory;
-        const motion::Motion u = back ? step(X, motion::Motion::Zero(), aside) : step(X, wanted, memory);
+        motion::Motion u = back ? step(X, motion::Motion::Zero(), aside) : step(X, wanted, memory);
+        if (!left && kept && u.norm() <= kStillMoving) {
+            const motion::Motion off = offRidge(wayTo(X_WG, X, rho), memory);
+            left = off.squaredNorm() > 0.0;
+            u += off;
+        }
         const motion::Motion made = shortened(u);
         last = back ? std::numeric_limits<double>::infinity() : u.norm();
         astray += back ? 0.0 : made.norm();

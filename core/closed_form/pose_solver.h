@@ -43,7 +43,7 @@ inline constexpr double kMostRise = 1e-7;       // of any point's arc over its c
 inline constexpr double kMostAstray = 6e-5;     // of |u| of looks since the last pose without overlap [m]
 inline constexpr double kRepair = 1e-4;         // of overlap that was there before, in a solve [m]
 inline constexpr double kKeptOverlap = 5e-8;    // [m]
-inline constexpr double kStillMoving = 2e-6;    // of |u| in a look: the error left is of second order [m]
+inline constexpr double kStillMoving = 3e-7;    // of |u| in a look: the error left is of second order [m]
 inline constexpr double kLeastStiffness = 0.3;  // of the least eigenvalue of B
 inline constexpr int kKeptLooks = 6;
 
@@ -52,8 +52,9 @@ inline constexpr int kKeptLooks = 6;
 /// by sequential quadratic programming: each look minimises ½ uᵀ B u - wᵀ u under a_i · u ≥ -gap_i, B = 1 - Σ λ_i H_i,
 /// λ of the look before. B is the algorithm: play of 10 µm with the hand 3 mm away has a constraint of 10 µm radius,
 /// past which rows alone run tangentially at every look. Where B is not positive its eigenvalues are raised to
-/// kLeastStiffness. Contacts that held stay as rows at their own place on the line for some looks (cuts), which ends
-/// cycles where a minimum moves along a kink. Where no pose is free, overlap is only kept from growing.
+/// kLeastStiffness, and where it rests on such a ridge it steps off once. Places where something held stay as rows for
+/// some looks (cuts) while their face is the highest there: keptAt(). Contacts whose line could not touch with their
+/// normal make no rows: Contact::lean. Where no pose is free, overlap is only kept from growing.
 ///
 /// Nothing is jumped. A pose counts only if it overlaps by no more than kKeptOverlap. On the way from one to the next
 /// no point of the held part goes farther than is proven to be free, or than kLongestWay and half the thickness of the
@@ -89,7 +90,8 @@ private:
     void find(const Pose& X) noexcept;
     void remember(const Pose& X, const PoseMemory& memory) noexcept;
     motion::Motion step(const Pose& X, const motion::Motion& wanted, PoseMemory& memory) noexcept;
-    bool factor(const Pose& X, MotionMatrix& L) const noexcept;
+    bool factor(const Pose& X, MotionMatrix& L) noexcept;
+    motion::Motion offRidge(const motion::Motion& way, const PoseMemory& memory) const noexcept;
     bool solveRows(const motion::Motion& wanted, motion::ActiveSet& active, motion::Motion& y) noexcept;
     void add(const Row& row) noexcept;
     motion::Motion shortened(const motion::Motion& u) const noexcept;
@@ -104,6 +106,7 @@ private:
     double overlap_ = 0.0, free_ = 0.0;        // there; a way that is proven to be free [m]
     std::optional<Pose> X_found_;
     bool full_ = false;                               // there
+    motion::Motion ridge_ = motion::Motion::Zero();   // of the last look: where its B curves down
     double reach_ = 0.0, longest_way_ = kLongestWay;  // of the held part's points
     double allowed_ = 0.0;                            // overlap that the solve leaves [m]
     FixedList<Pose, kMostLooks + 1> way_;

@@ -286,10 +286,35 @@ double thicknessBetween(const Face& face, const Face& other) {
 
 std::optional<SmoothSolid> solidFrom(const shape::Sheet&) { return std::nullopt; }
 
+constexpr double kOnFace = 2e-8;  // of a conic in pieces [m]
+
+/// The faces of a lump that meet in an edge, where they are two, and those at which it ends, where three meet.
+void nameFaces(const Lump& lump, Curve& edge) {
+    const auto isOn = [&](const Face& face, double share) {
+        return std::abs(valueOf(face, pointOf(edge, share * edge.end))) < kOnFace;
+    };
+    std::vector<Face> sides;
+    for (const Face& face : lump.faces)
+        if (isOn(face, -0.9) && isOn(face, 0.1) && isOn(face, 0.8)) sides.push_back(face);
+    if (edge.sides || sides.size() != 2 || valueOf(lump, pointOf(edge, 0.1 * edge.end)) > kOnFace) return;
+    edge.sides = std::array{sides[0], sides[1]};
+    if (edge.kind != Curve::Kind::Straight) return;
+    for (const double end : {-1.0, 1.0}) {
+        std::vector<Face> caps;
+        for (const Face& face : lump.faces)
+            if (isOn(face, end) && !isOn(face, 0.1)) caps.push_back(face);
+        if (caps.size() == 1) edge.caps[end < 0.0 ? 0 : 1] = caps[0];
+    }
+}
+
 }  // namespace
 
 std::optional<SmoothSolid> solidOf(const shape::Shape& shape) {
-    return std::visit([](const auto& s) -> std::optional<SmoothSolid> { return solidFrom(s); }, shape);
+    auto solid = std::visit([](const auto& s) -> std::optional<SmoothSolid> { return solidFrom(s); }, shape);
+    if (!solid) return solid;
+    for (Curve& edge : solid->edges)
+        for (const Lump& lump : solid->lumps) nameFaces(lump, edge);
+    return solid;
 }
 
 Vec3 pointOf(const Curve& curve, double t) noexcept {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -15,9 +16,11 @@ struct Curve {
 
     Kind kind = Kind::Point;
     Vec3 centre = Vec3::Zero();
-    Vec3 e1 = Vec3::Zero(), e2 = Vec3::Zero();  // [m]; of a straight piece e1 alone
-    double end = 1.0;                           // of t; π: a whole circle
-    double thickness = 0.0;                     // of the material around it [m]; 0: an edge
+    Vec3 e1 = Vec3::Zero(), e2 = Vec3::Zero();                // [m]; of a straight piece e1 alone
+    double end = 1.0;                                         // of t; π: a whole circle
+    double thickness = 0.0;                                   // of the material around it [m]; 0: an edge
+    std::optional<std::array<Face, 2>> sides = std::nullopt;  // of an edge: the faces that meet there
+    std::array<std::optional<Face>, 2> caps = {};             // and the one at which it ends, at -end and at end
 
     /// No point of it is farther from the centre [m].
     double extent() const noexcept { return kind == Kind::Point ? 0.0 : e1.norm(); }

@@ -19,6 +19,7 @@ constexpr int kRingSamples = 96;      // of a circle against a face that is not 
 constexpr int kSteps = 60;            // to close a bracket
 constexpr double kClosed = 1e-10;     // of a line's parameter
 constexpr double kOnFace = 1e-9;      // [m]
+constexpr double kFlat = 0.02;        // of a line on a face [rad]
 
 std::uint8_t placeOf(const Lump& lump, const Face& face) noexcept {
     return static_cast<std::uint8_t>(&face - lump.faces.data());
@@ -201,6 +202,38 @@ std::optional<Touch> kinkBetween(const Curve& line, const Lump& lump, const Samp
                  .share = rises / (rises - falls)};
 }
 
+bool isThere(const Touches& touches, const Curve& line, double t) noexcept {
+    for (const Touch& touch : touches.all())
+        if (apartOn(line, touch.t, t) < kSameTouch) return true;
+    return false;
+}
+
+/// Where a line that lies on a face leaves it, whether or not that is a minimum: it tilts about either end.
+void addEnd(const Curve& line, const Lump& lump, const Face& face, double t, double reach, Touches& touches) noexcept {
+    const double gap = valueOf(face, pointOf(line, t));
+    if (gap > reach || isThere(touches, line, t)) return;
+    touches.add({.kind = Touch::Kind::Fixed, .t = t, .gap = gap, .a = placeOf(lump, face)});
+}
+
+bool liesOn(const Curve& line, double slope) noexcept { return std::abs(slope) < kFlat * line.extent(); }
+
+/// Of a straight line through `at`, where a plane is the highest face.
+void addEndsOnPlane(const Curve& edge, const Lump& lump, const Highest& highest, const Face& face, double at,
+                    double reach, Touches& touches) noexcept {
+    const double slope = slopeOn(face, edge, at), value = valueOf(face, pointOf(edge, at));
+    if (!face.isPlane() || !liesOn(edge, slope)) return;
+    double low = -edge.end, high = edge.end;
+    for (const Face* other : highest.faces()) {
+        if (other == &face || !other->isPlane()) continue;
+        const double relative = slopeOn(*other, edge, at) - slope;
+        const double short_of = value - valueOf(*other, pointOf(edge, at));
+        if (relative > 0.0) high = std::min(high, at + short_of / relative);
+        if (relative < 0.0) low = std::max(low, at + short_of / relative);
+    }
+    for (const double t : {low, high})
+        if (low <= high && std::abs(t) < edge.end) addEnd(edge, lump, face, t, reach, touches);
+}
+
 bool isBeside(const Touches& touches, const Curve& line, double t) noexcept {
     for (const Touch& touch : touches.all()) {
         if (apartOn(line, touch.t, t) < (touch.kind == Touch::Kind::Kink ? kBesideKink : kSameTouch)) return true;
@@ -221,7 +254,15 @@ double searchConvex(const Curve& edge, const Lump& lump, const Highest& highest,
     if (low.slope < 0.0 && high.slope > 0.0) {
         const Touch touch = minimumBetween(edge, lump, highest, low, high);
         least = touch.gap;
-        if (touch.gap <= reach) touches.add(touch);
+        if (touch.gap <= reach) {
+            touches.add(touch);
+            addEndsOnPlane(edge, lump, highest, lump.faces[touch.a], touch.t, reach, touches);
+            if (touch.b != Touch::kNone)
+                addEndsOnPlane(edge, lump, highest, lump.faces[touch.b], touch.t, reach, touches);
+        }
+    } else {
+        const Sample& lower = low.value < high.value ? low : high;
+        addEndsOnPlane(edge, lump, highest, *lower.face, lower.t, reach, touches);
     }
     addFixed(edge, lump, low, reach, touches);
     addFixed(edge, lump, high, reach, touches);
@@ -302,6 +343,14 @@ double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& to
         const double bound = 0.5 * (low.value + high.value - farthest);
         least = std::min(least, bound);
         if (bound > reach) continue;
+        if (low.face != high.face && (liesOn(edge, low.slope) || liesOn(edge, high.slope))) {
+            const Face& flat = liesOn(edge, low.slope) ? *low.face : *high.face;
+            const Face& other = &flat == low.face ? *high.face : *low.face;
+            const auto ahead = [&](const Vec3& p) { return valueOf(*high.face, p) - valueOf(*low.face, p); };
+            const double t = zeroBetween(low.t, high.t, ahead(low.p), ahead(high.p),
+                                         [&](double at) { return ahead(pointOf(edge, at)); });
+            if (slopeOn(flat, edge, t) * slopeOn(other, edge, t) > 0.0) addEnd(edge, lump, flat, t, reach, touches);
+        }
         if (!(low.slope < 0.0 && high.slope >= 0.0)) {
             if (const auto kink = kinkBetween(edge, lump, low, high); kink && kink->gap <= reach) touches.add(*kink);
             continue;

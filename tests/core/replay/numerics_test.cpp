@@ -48,7 +48,7 @@ const Golden kGolden[] = {
 constexpr std::uint64_t kEveryEffect = 0x9ba5816cee9eacb6u;
 
 /// The same without friction, on closed forms.
-constexpr std::uint64_t kClosedForm = 0x3ba18c657aa64979u;
+constexpr std::uint64_t kClosedForm = 0x26b3332b2dbec47au;
 
 /// On surfaces, without the low-pass that they do not have.
 constexpr std::uint64_t kSurface = 0xec50ceab668112a1u;
