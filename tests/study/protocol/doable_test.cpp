@@ -709,11 +709,13 @@ TEST(Doable, BothWaysIsTheDefaultOnlyWhereOneWayWouldMiss) {
         std::ofstream(path) << study.text();
         return examineProtocol(path, knownDevices(), knownMeasures()).plan.conditions.at(0).scene.contact.two_way;
     };
-    EXPECT_TRUE(twoWay(kPin, ""));
-    EXPECT_FALSE(twoWay(kPin, "two_way = false"));
-    EXPECT_FALSE(twoWay(kPin, "spacing_mm = 0.5"));
-    EXPECT_FALSE(twoWay("mesh = \"post.off\"", ""));
-    EXPECT_TRUE(twoWay("mesh = \"post.off\"", "two_way = true"));
+    const std::string field = "geometry = \"field\"\n";
+    EXPECT_TRUE(twoWay(kPin, field));
+    EXPECT_FALSE(twoWay(kPin, field + "two_way = false"));
+    EXPECT_FALSE(twoWay(kPin, field + "spacing_mm = 0.5"));
+    EXPECT_FALSE(twoWay("mesh = \"post.off\"", field));
+    EXPECT_TRUE(twoWay("mesh = \"post.off\"", field + "two_way = true"));
+    EXPECT_FALSE(twoWay(kPin, "")) << "on closed forms, which have no points";
 }
 
 }  // namespace

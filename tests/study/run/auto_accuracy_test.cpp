@@ -41,6 +41,7 @@ TEST(AutoAccuracy, APickIsFeltBothWaysWhereOneWayWouldMissAPin) {
     const shape::Shape obstacles[] = {shape::Cylinder{0.001, 0.01}, shape::Box{0.02, 0.02, 0.02}};
     for (std::size_t i = 0; i < 2; ++i) {
         plan.conditions[i].accuracy_budget = 50e-6;
+        plan.conditions[i].scene.contact.geometry = scene::Geometry::Field;  // as accuracy = "auto" is read
         auto& parts = plan.conditions[i].scene.parts;
         parts.resize(2);
         parts[0].name = "block";
