@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/closed_form/touch_minimum.h"
+
 namespace passung::closed_form {
 
 namespace {
@@ -12,8 +14,6 @@ namespace {
 constexpr int kCircleSamples = 24;
 constexpr int kStraightSamples = 12;  // pieces
 constexpr int kRingSamples = 96;      // of a circle against a face that is not simple on it: minima may lie close
-constexpr int kSteps = 60;            // to close a bracket
-constexpr double kClosed = 1e-10;     // of a line's parameter
 constexpr double kOnFace = 1e-9;      // [m]
 
 /// Cosines and sines at the samples of a circle.
@@ -41,10 +41,6 @@ Vec3 sampleSlope(const Curve& line, int i, double t) noexcept {
     if (!line.isClosed()) return slopeOf(line, t);
     const auto at = static_cast<std::size_t>(i);
     return kCircle.cosine[at] * line.e2 - kCircle.sine[at] * line.e1;
-}
-
-std::uint8_t placeOf(const Lump& lump, const Face& face) noexcept {
-    return static_cast<std::uint8_t>(&face - lump.faces.data());
 }
 
 /// The faces of a lump that can be the largest somewhere along a line.
@@ -94,108 +90,45 @@ double slopeOn(const Face& face, const Curve& line, double t) noexcept {
     return gradientOf(face, line.centre + c * line.e1 + s * line.e2).dot(c * line.e2 - s * line.e1);
 }
 
-/// A place on the line, with the highest face there.
-struct Sample {
-    double t = 0.0, value = 0.0, slope = 0.0;
-    const Face* face = nullptr;
-    Vec3 p;
+/// A lump's function along a line.
+class Walk {
+public:
+    struct Point {
+        double t = 0.0;
+        Vec3 p;
+    };
+
+    Walk(const Curve& line, const Lump& lump) noexcept : line_(line), lump_(lump), highest_(line, lump) {}
+
+    const Curve& line() const noexcept { return line_; }
+    const Lump& lump() const noexcept { return lump_; }
+    const Highest& faces() const noexcept { return highest_; }
+
+    Point at(double t) const noexcept { return {t, pointOf(line_, t)}; }
+    double value(const Face& face, const Point& at) const noexcept { return valueOf(face, at.p); }
+    double slope(const Face& face, const Point& at) const noexcept { return slopeOn(face, line_, at.t); }
+    const Face* highest(const Point& at, double& value) const noexcept { return highest_.at(at.p, value); }
+
+private:
+    const Curve& line_;
+    const Lump& lump_;
+    Highest highest_;
 };
 
-Sample sampleAt(const Curve& line, const Highest& highest, double t) noexcept {
-    Sample sample;
-    sample.t = t;
-    sample.p = pointOf(line, t);
-    sample.face = highest.at(sample.p, sample.value);
-    sample.slope = slopeOn(*sample.face, line, t);
-    return sample;
-}
-
-/// The zero of a function between two places where its sign differs, by false position after Illinois.
-template <class Function>
-double zeroBetween(double low, double high, double at_low, double at_high, Function function) noexcept {
-    int side = 0;
-    for (int i = 0; i < kSteps && high - low > kClosed; ++i) {
-        double t = at_high == at_low ? 0.5 * (low + high) : (low * at_high - high * at_low) / (at_high - at_low);
-        if (!(t > low && t < high)) t = 0.5 * (low + high);
-        const double value = function(t);
-        if (std::abs(value) < 1e-18) return t;
-        if ((value > 0.0) == (at_high > 0.0)) {
-            if (side == 1) at_low *= 0.5;
-            high = t;
-            at_high = value;
-            side = 1;
-        } else {
-            if (side == -1) at_high *= 0.5;
-            low = t;
-            at_low = value;
-            side = -1;
-        }
-    }
-    return 0.5 * (low + high);
-}
-
-/// The minimum between two samples of which the first falls and the second rises.
-Touch minimumBetween(const Curve& line, const Lump& lump, const Highest& highest, Sample low, Sample high) noexcept {
-    Sample here = low;
-    for (int i = 0; i < kSteps; ++i) {
-        const bool one_face = low.face == high.face;
-        const double t = one_face ? zeroBetween(low.t, high.t, low.slope, high.slope,
-                                                [&](double at) { return slopeOn(*low.face, line, at); })
-                                  : zeroBetween(low.t, high.t, valueOf(*high.face, low.p) - low.value,
-                                                high.value - valueOf(*low.face, high.p), [&](double at) {
-                                                    const Vec3 p = pointOf(line, at);
-                                                    return valueOf(*high.face, p) - valueOf(*low.face, p);
-                                                });
-        here = sampleAt(line, highest, t);
-        const double of_low = valueOf(*low.face, here.p);
-        if (here.value > of_low + 1e-15 && here.face != low.face && here.face != high.face) {
-            (here.slope < 0.0 ? low : high) = here;  // a third face
-            continue;
-        }
-        if (one_face) return {.kind = Touch::Kind::Smooth, .t = t, .gap = of_low, .a = placeOf(lump, *low.face)};
-        const double falls = slopeOn(*low.face, line, t), rises = slopeOn(*high.face, line, t);
-        if (falls <= 0.0 && rises >= 0.0) {
-            if (rises - falls <= 0.0)
-                return {.kind = Touch::Kind::Smooth, .t = t, .gap = of_low, .a = placeOf(lump, *low.face)};
-            return {.kind = Touch::Kind::Kink,
-                    .t = t,
-                    .gap = of_low,
-                    .a = placeOf(lump, *low.face),
-                    .b = placeOf(lump, *high.face),
-                    .share = rises / (rises - falls)};
-        }
-        if (falls > 0.0)
-            high = {t, of_low, falls, low.face, here.p};
-        else
-            low = {t, of_low, rises, high.face, here.p};
-    }
-    return {.kind = Touch::Kind::Fixed, .t = here.t, .gap = here.value, .a = placeOf(lump, *here.face)};
-}
-
-bool isBeside(const Touches& touches, const Curve& line, double t) noexcept {
-    for (const Touch& touch : touches.all()) {
-        if (apartOn(line, touch.t, t) < (touch.kind == Touch::Kind::Kink ? kBesideKink : kSameTouch)) return true;
-    }
-    return false;
-}
-
-void addFixed(const Curve& edge, const Lump& lump, const Sample& at, double reach, Touches& touches) noexcept {
-    if (at.value > reach || isBeside(touches, edge, at.t)) return;
-    touches.add({.kind = Touch::Kind::Fixed, .t = at.t, .gap = at.value, .a = placeOf(lump, *at.face)});
-}
+using Sample = SampleOn<Walk>;
 
 /// A straight edge and a function that has one minimum on it.
-double searchConvex(const Curve& edge, const Lump& lump, const Highest& highest, double reach,
-                    Touches& touches) noexcept {
-    const Sample low = sampleAt(edge, highest, -edge.end), high = sampleAt(edge, highest, edge.end);
+double searchConvex(const Walk& walk, double reach, Touches& touches) noexcept {
+    const double end = walk.line().end;
+    const Sample low = sampleAt(walk, -end), high = sampleAt(walk, end);
     double least = std::min(low.value, high.value);
     if (low.slope < 0.0 && high.slope > 0.0) {
-        const Touch touch = minimumBetween(edge, lump, highest, low, high);
+        const Touch touch = minimumBetween(walk, low, high);
         least = touch.gap;
         if (touch.gap <= reach) touches.add(touch);
     }
-    addFixed(edge, lump, low, reach, touches);
-    addFixed(edge, lump, high, reach, touches);
+    addFixed(walk, low, reach, touches);
+    addFixed(walk, high, reach, touches);
     return least;
 }
 
@@ -218,19 +151,19 @@ void addCore(const Curve& core, const Face& face, const Lump& lump, double t, do
 }  // namespace
 
 double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& touches) noexcept {
-    const Highest highest(edge, lump);
+    const Walk walk(edge, lump);
+    const Highest& highest = walk.faces();
     if (highest.least() > reach) return highest.least();
-    if (edge.kind == Curve::Kind::Straight && highest.isConvex())
-        return searchConvex(edge, lump, highest, reach, touches);
+    if (edge.kind == Curve::Kind::Straight && highest.isConvex()) return searchConvex(walk, reach, touches);
     const bool closed = edge.isClosed();
     const int pieces = edge.kind == Curve::Kind::Circle ? kCircleSamples : kStraightSamples;
     const double begin = -edge.end, piece = 2.0 * edge.end / pieces;
     std::array<Sample, kCircleSamples + 1> samples;
     for (int i = 0; i <= pieces; ++i) {
         Sample& sample = samples[static_cast<std::size_t>(i)];
-        sample.t = begin + piece * i;
-        sample.p = samplePoint(edge, i, sample.t);
-        sample.face = highest.at(sample.p, sample.value);
+        sample.at = {begin + piece * i, Vec3::Zero()};
+        sample.at.p = samplePoint(edge, i, sample.at.t);
+        sample.face = highest.at(sample.at.p, sample.value);
     }
     const double farthest = edge.extent() * piece;
     double least = samples[0].value;
@@ -244,16 +177,16 @@ double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& to
             sloped = false;
             continue;
         }
-        if (!sloped) low.slope = gradientOf(*low.face, low.p).dot(sampleSlope(edge, i, low.t));
-        high.slope = gradientOf(*high.face, high.p).dot(sampleSlope(edge, i + 1, high.t));
+        if (!sloped) low.slope = gradientOf(*low.face, low.at.p).dot(sampleSlope(edge, i, low.at.t));
+        high.slope = gradientOf(*high.face, high.at.p).dot(sampleSlope(edge, i + 1, high.at.t));
         sloped = true;
         if (!(low.slope < 0.0 && high.slope >= 0.0)) continue;
-        const Touch touch = minimumBetween(edge, lump, highest, low, high);
+        const Touch touch = minimumBetween(walk, low, high);
         if (touch.gap <= reach) touches.add(touch);
     }
     const int fan = edge.kind == Curve::Kind::Circle ? kCircleSamples / 8 : kStraightSamples;
     for (int i = 0; i < pieces + (closed ? 0 : 1); i += fan)
-        addFixed(edge, lump, samples[static_cast<std::size_t>(i)], reach, touches);
+        addFixed(walk, samples[static_cast<std::size_t>(i)], reach, touches);
     return least;
 }
 
