@@ -5,6 +5,15 @@
 
 namespace passung::closed_form {
 
+/// Of the lines of one part: how the other part, S, sees them.
+struct LineFrame {
+    Mat3 R_WS;
+    Vec3 p_WS;
+    Pose X_SL;    // of the lines
+    Vec3 origin;  // of the held part, in S
+    double sign;  // of what a motion of the held part does to the gap: 1 if the line moves, -1 if the lump does
+};
+
 namespace {
 
 constexpr double kLeastBend = 1e-8;  // f_tt of a minimum that is told from a flat place [m]
@@ -20,27 +29,32 @@ Curve moved(const Pose& X, const Curve& line) noexcept {
     Curve there = line;
     there.centre = X * line.centre;
     there.e1 = X.q * line.e1;
-    if (line.kind == Curve::Kind::Circle) there.e2 = X.q * line.e2;
+    if (line.kind == Curve::Kind::Circle || line.kind == Curve::Kind::Spiral) there.e2 = X.q * line.e2;
+    if (line.kind == Curve::Kind::Spiral) there.e3 = X.q * line.e3;
     return there;
 }
 
-/// Of a contact: the frame of its lump's part.
-struct LineView {
-    Mat3 R_WS;  // the lump's part
-    Vec3 p_WS;
-    Curve line;   // in S
-    Vec3 origin;  // of the held part, in S
-    double sign;  // of what a motion of the held part does to the gap: 1 if the line moves, -1 if the lump does
+/// A line with the frame of its lump's part.
+struct LineView : LineFrame {
+    Curve line;  // in S
 };
 
-LineView viewOf(const SolidPair& pair, const Pose& X_WH, const TouchName& name) noexcept {
+LineFrame frameOf(const SolidPair& pair, const Pose& X_WH, bool of_held) noexcept {
+    if (of_held) {
+        const Pose X_OH = pair.X_WO.inverse() * X_WH;
+        return {pair.X_WO.q.toRotationMatrix(), pair.X_WO.p, X_OH, X_OH.p, 1.0};
+    }
+    return {X_WH.q.toRotationMatrix(), X_WH.p, X_WH.inverse() * pair.X_WO, Vec3::Zero(), -1.0};
+}
+
+LineView viewOf(const SolidPair& pair, const LineFrame& frame, const TouchName& name) noexcept {
     const SmoothSolid& lines = name.of_held ? *pair.held : *pair.obstacle;
     const Curve& line = name.core ? lines.cores[name.line] : lines.edges[name.line];
-    if (name.of_held) {
-        const Pose X_OH = pair.X_WO.inverse() * X_WH;
-        return {pair.X_WO.q.toRotationMatrix(), pair.X_WO.p, moved(X_OH, line), X_OH.p, 1.0};
-    }
-    return {X_WH.q.toRotationMatrix(), X_WH.p, moved(X_WH.inverse() * pair.X_WO, line), Vec3::Zero(), -1.0};
+    return {frame, moved(frame.X_SL, line)};
+}
+
+LineView viewOf(const SolidPair& pair, const Pose& X_WH, const TouchName& name) noexcept {
+    return viewOf(pair, frameOf(pair, X_WH, name.of_held), name);
 }
 
 const Lump& lumpOf(const SolidPair& pair, const TouchName& name) noexcept {
@@ -150,10 +164,15 @@ void ContactSearch::addMeetings(bool of_held) {
     const SmoothSolid& lumps = of_held ? *pair_.obstacle : *pair_.held;
     for (const bool core : {false, true}) {
         const std::size_t count = core ? lines.cores.size() : lines.edges.size();
-        for (std::size_t line = 0; line < count; ++line)
-            for (std::size_t lump = 0; lump < lumps.lumps.size(); ++lump)
-                meetings_.push_back(
-                    {.name = {of_held, core, static_cast<std::uint16_t>(line), static_cast<std::uint16_t>(lump)}});
+        for (std::size_t line = 0; line < count; ++line) {
+            const Curve& curve = (core ? lines.cores : lines.edges)[line];
+            for (std::size_t piece = 0; piece < piecesOf(curve); ++piece)
+                for (std::size_t lump = 0; lump < lumps.lumps.size(); ++lump)
+                    meetings_.push_back(
+                        {.name = {of_held, core, static_cast<std::uint16_t>(line), static_cast<std::uint16_t>(lump)},
+                         .piece = static_cast<std::uint16_t>(piece),
+                         .of_thread = curve.kind == Curve::Kind::Spiral || hasFlank(lumps.lumps[lump])});
+        }
     }
 }
 
@@ -162,9 +181,11 @@ double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contact
     turn_ += rotationVector(X_WH.q * X_last_.q.conjugate()).norm();
     X_last_ = X_WH;
     contacts.clear();
+    sampled_ = nullptr;
+    const LineFrame of_obstacle = frameOf(pair_, X_WH, false), of_held = frameOf(pair_, X_WH, true);
     double least = std::numeric_limits<double>::infinity();
     for (Meeting& meeting : meetings_) {
-        if (!(boundOf(meeting) > reach)) look(X_WH, reach, meeting, contacts);
+        if (!(boundOf(meeting) > reach)) look(meeting.name.of_held ? of_held : of_obstacle, reach, meeting, contacts);
         least = std::min(least, boundOf(meeting));
     }
     return least;
@@ -176,14 +197,28 @@ double ContactSearch::boundOf(const Meeting& meeting) const noexcept {
     return meeting.bound - way - turn * (meeting.lever + way);
 }
 
-void ContactSearch::look(const Pose& X_WH, double reach, Meeting& meeting, PairContacts& contacts) noexcept {
+/// Its line's points were taken, for another lump.
+bool ContactSearch::isSampled(const Meeting& meeting) const noexcept {
+    if (sampled_ == nullptr || sampled_->piece != meeting.piece) return false;
+    const TouchName &now = sampled_->name, &name = meeting.name;
+    return now.of_held == name.of_held && now.core == name.core && now.line == name.line;
+}
+
+void ContactSearch::look(const LineFrame& frame, double reach, Meeting& meeting, PairContacts& contacts) noexcept {
     const TouchName& name = meeting.name;
-    const LineView view = viewOf(pair_, X_WH, name);
+    const LineView view = viewOf(pair_, frame, name);
     const Lump& lump = lumpOf(pair_, name);
     Touches touches;
-    meeting.bound =
-        name.core ? searchCore(view.line, lump, reach, touches) : searchEdge(view.line, lump, reach, touches);
-    meeting.lever = (view.line.centre - view.origin).norm() + view.line.extent();
+    const LinePiece piece = pieceOf(view.line, meeting.piece);
+    if (meeting.of_thread && !name.core) {
+        if (!isSampled(meeting)) samples_.take(view.line, piece);
+        sampled_ = &meeting;
+        meeting.bound = searchAlongThread(view.line, piece, samples_, lump, reach, touches);
+    } else {
+        meeting.bound =
+            name.core ? searchCore(view.line, lump, reach, touches) : searchEdge(view.line, lump, reach, touches);
+    }
+    meeting.lever = (piece.middle - view.origin).norm() + piece.extent;
     meeting.way = way_;
     meeting.turn = turn_;
     for (const Touch& touch : touches.all()) contacts.add(contactOf(pair_, view, name, touch));

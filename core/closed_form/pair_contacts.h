@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/closed_form/thread_search.h"
 #include "core/closed_form/touch_search.h"
 #include "core/motion/active_set.h"
 
@@ -30,7 +31,7 @@ struct Contact {
 };
 
 /// Contacts of a pair at one pose. Full: an overlap may be unknown.
-using PairContacts = FixedList<Contact, 256>;
+using PairContacts = FixedList<Contact, 512>;
 
 /// The most that any contact overlaps [m], ≥ 0.
 double overlapOf(const PairContacts& contacts) noexcept;
@@ -42,6 +43,8 @@ struct SolidPair {
     Pose X_WO;             // of the obstacle
     double metric_radius;  // ρ [m], > 0
 };
+
+struct LineFrame;
 
 /// Finds a pair's contacts at one pose after the other. What it knows of a line and a lump that are far from each other
 /// saves looks at them until the held part has moved so far that they could touch.
@@ -57,9 +60,11 @@ public:
     double find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept;
 
 private:
-    /// A line and a lump of the other part.
+    /// A piece of a line and a lump of the other part.
     struct Meeting {
         TouchName name;
+        std::uint16_t piece = 0;
+        bool of_thread = false;
         double bound = 0.0;            // of the gap, when it was looked at last [m]
         double lever = 0.0;            // of the line's points about the held part's origin, then [m]
         double way = 0.0, turn = 0.0;  // of the held part, until then
@@ -67,12 +72,15 @@ private:
 
     void addMeetings(bool of_held);
     double boundOf(const Meeting& meeting) const noexcept;
-    void look(const Pose& X_WH, double reach, Meeting& meeting, PairContacts& contacts) noexcept;
+    void look(const LineFrame& frame, double reach, Meeting& meeting, PairContacts& contacts) noexcept;
+    bool isSampled(const Meeting& meeting) const noexcept;
 
     SolidPair pair_;
     std::vector<Meeting> meetings_;
     Pose X_last_;
-    double way_ = 0.0, turn_ = 0.0;  // that the held part has made [m], [rad]
+    ThreadSamples samples_;
+    const Meeting* sampled_ = nullptr;  // whose line's piece they are of, at this pose
+    double way_ = 0.0, turn_ = 0.0;     // that the held part has made [m], [rad]
 };
 
 /// The contact that the same place of the line makes at another pose, with the same faces. rt-safe.

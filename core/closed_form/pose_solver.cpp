@@ -12,7 +12,6 @@ namespace passung::closed_form {
 
 namespace {
 
-constexpr double kReach = 1e-3;          // within which contacts become rows: no point goes farther in a look [m]
 constexpr double kSamePlace = 0.5;       // of a line's parameter: a contact that held is that one now
 constexpr int kMostTaken = 60;           // rows taken up or let go in a look
 constexpr double kRowTolerance = 1e-12;  // [m]
@@ -36,6 +35,7 @@ PoseSolver::PoseSolver(std::span<const SolidPair> pairs)
     for (const SolidPair& pair : pairs) {
         searches_.emplace_back(pair);
         reach_ = std::max(reach_, reachOf(*pair.held));
+        sight_ = std::min({sight_, sightOf(*pair.held), sightOf(*pair.obstacle)});
         longest_way_ = std::min({longest_way_, 0.5 * thicknessOf(*pair.held), 0.5 * thicknessOf(*pair.obstacle)});
     }
 }
@@ -60,7 +60,7 @@ void PoseSolver::find(const Pose& X) noexcept {
     free_ = std::numeric_limits<double>::infinity();
     full_ = false;
     for (std::size_t p = 0; p < searches_.size(); ++p) {
-        free_ = std::min(free_, searches_[p].find(X, kReach, contacts_));
+        free_ = std::min(free_, searches_[p].find(X, sight_, contacts_));
         overlap_ = std::max(overlap_, overlapOf(contacts_));
         full_ = full_ || contacts_.full();
         for (const Contact& contact : contacts_.all())
@@ -101,7 +101,7 @@ void PoseSolver::remember(const Pose& X, const PoseMemory& memory) noexcept {
         kept.from.contact = atPose(pair(old.pair), X, old.contact);
         kept.from.age = old.age + 1;
         if (now != nullptr) kept.from.push = 0.0;
-        if (kept.from.contact.gap < kReach) add(kept);
+        if (kept.from.contact.gap < sight_) add(kept);
     }
 }
 

@@ -39,6 +39,7 @@ struct ConstrainedPose {
 inline constexpr int kMostLooks = 24;
 inline constexpr double kLongestLook = 2.5e-4;  // of |u| in a look near an obstacle [m]
 inline constexpr double kLongestWay = 7e-4;     // of any point of the held part in such a look [m]
+inline constexpr double kReach = 1e-3;          // within which contacts become rows: no point goes so far in a look [m]
 inline constexpr double kRepair = 1e-4;         // of overlap that was there before, in a solve [m]
 inline constexpr double kKeptOverlap = 5e-8;    // [m]
 inline constexpr double kStillMoving = 2e-6;    // of |u| in a look: the error left is of second order [m]
@@ -100,6 +101,7 @@ private:
     std::optional<Pose> X_found_;
     bool full_ = false;                               // there
     double reach_ = 0.0, longest_way_ = kLongestWay;  // of the held part's points
+    double sight_ = kReach;                           // within which contacts become rows [m]
     double allowed_ = 0.0;                            // overlap that the solve leaves [m]
     FixedList<Pose, kMostLooks + 1> way_;
 };

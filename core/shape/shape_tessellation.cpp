@@ -8,6 +8,7 @@
 #include "core/shape/circle_steps.h"
 #include "core/shape/profile.h"
 #include "core/shape/shape.h"
+#include "core/shape/thread_surface.h"
 
 namespace passung::shape {
 

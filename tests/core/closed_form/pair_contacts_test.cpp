@@ -134,7 +134,7 @@ TEST_P(ContactsOfShapes, AreTheSameForASearchThatRemembersWhatIsFar) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ContactsOfShapes, testing::ValuesIn(shapePairs()), nameOfPair);
+INSTANTIATE_TEST_SUITE_P(All, ContactsOfShapes, testing::ValuesIn(allPairs()), nameOfPair);
 
 }  // namespace
 }  // namespace passung::closed_form
