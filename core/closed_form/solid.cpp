@@ -397,6 +397,8 @@ double reachOf(const SmoothSolid& solid) noexcept {
     return most;
 }
 
+bool isThread(const SmoothSolid& solid) noexcept { return std::isfinite(sightOf(solid)); }
+
 double sightOf(const SmoothSolid& solid) noexcept {
     double least = std::numeric_limits<double>::infinity();
     for (const Lump& lump : solid.lumps)

@@ -69,6 +69,9 @@ Vec3 bendOf(const Curve& curve, double t) noexcept;   // d²P/dt²
 /// thread's other flank [m]; infinite if it has no thread.
 double sightOf(const SmoothSolid& solid) noexcept;
 
+/// It has a thread's flank.
+bool isThread(const SmoothSolid& solid) noexcept;
+
 /// How far two places of the line are apart, by t; round a whole circle the shorter way.
 double apartOn(const Curve& curve, double s, double t) noexcept;
 

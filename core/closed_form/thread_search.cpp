@@ -14,15 +14,17 @@ namespace {
 constexpr double kPiece = 2.0 * std::numbers::pi / ThreadSamples::kMost;  // of a spiral and a circle [rad]
 constexpr int kFewestPieces = 4;
 constexpr int kStraightPieces = 12;
-constexpr std::size_t kFan = 6;         // pieces from one fixed point to the next
-constexpr double kAcross = 0.15;        // of a pitch: a piece of a line across a thread's ridges
-constexpr int kMostAcross = 64;         // such pieces
-constexpr double kLevel = 1e-9;         // second derivative by t [m]
+constexpr std::size_t kFan = 4;   // pieces from one fixed point to the next
+constexpr double kAcross = 0.15;  // of a pitch: a piece of a line across a thread's ridges
+constexpr int kMostAcross = 64;   // such pieces
+constexpr double kLevel = 1e-9;   // second derivative by t [m]
+constexpr double kSamePitch = 1e-12;
 constexpr double kLeastRadius = 1e-12;  // [m]
 
 /// A lump's function along a line.
 class Walk {
 public:
+    static constexpr double kEnough = 1e-7;  // [rad]: of the gap less than a picometre, where two faces cross 1e-10 m
     using Point = ThreadPoint;
 
     Walk(const Curve& line, const LinePiece& piece, const Lump& lump) noexcept : line_(line), lump_(lump) {
@@ -118,6 +120,28 @@ private:
     double least_ = -std::numeric_limits<double>::infinity();
 };
 
+/// A bound of the function along a helix of the ridges' own pitch, which a helix about the axis keeps all along: less
+/// how far the line lies from such a one. -infinity of other lines.
+double boundOfHelix(const Curve& line, const LinePiece& piece, const Lump& lump) noexcept {
+    double least = -std::numeric_limits<double>::infinity();
+    if (line.kind != Curve::Kind::Spiral || line.widening != 0.0 || !(line.e3.z() > 0.5)) return least;
+    const double half = 0.5 * (piece.end - piece.begin),
+                 turned = std::atan2(line.e1.y() - line.e2.x(), line.e1.x() + line.e2.y());
+    const double off = std::sqrt(piece.middle.x() * piece.middle.x() + piece.middle.y() * piece.middle.y()) +
+                       (line.e3 - Vec3::UnitZ()).norm() * (line.radius + half * std::abs(line.climb));
+    for (const Face& face : lump.faces) {
+        if (face.kind == Face::Kind::Cylinder && face.about_z)
+            least = std::max(least, (face.hollow ? -1.0 : 1.0) * (line.radius - face.radius));
+        if (face.kind != Face::Kind::Helicoid) continue;
+        if (std::abs(line.climb * 2.0 * std::numbers::pi - face.pitch) > kSamePitch * face.pitch) continue;
+        const double z = piece.middle.z(), phi = 0.5 * (piece.begin + piece.end) + turned;
+        least = std::max(
+            least, std::min(face.out * (line.radius - face.radius) + std::abs(face.along) * fromFlank(face, z, phi),
+                            beforeNextRidge(face, z, phi)));
+    }
+    return least - off;
+}
+
 using Sample = SampleOn<Walk>;
 
 class ThreadSearch {
@@ -126,13 +150,14 @@ public:
         : walk_(walk), reach_(reach), touches_(touches) {}
 
     double search(const LinePiece& piece, const ThreadSamples& samples) noexcept {
-        const double farthest = piece.speed * (piece.end - piece.begin) / static_cast<double>(samples.pieces());
+        const double speed = piece.speed;
         double least = std::numeric_limits<double>::infinity();
         Sample low = sampled(samples[0]);
         double bound = boundAt(low);
         for (std::size_t i = 0; i < samples.pieces(); ++i) {
             if (i % kFan == 0) addFixed(walk_, low, reach_, touches_);
             Sample high = sampled(samples[i + 1]);
+            const double farthest = speed * (high.at.t - low.at.t);
             const double bound_high = boundAt(high), between = 0.5 * (bound + bound_high - farthest);
             least = std::min(least, between);
             if (between <= reach_) look(low, high);
@@ -210,25 +235,77 @@ private:
 
 }  // namespace
 
-ThreadPoint threadPoint(const Curve& line, double t) noexcept {
-    ThreadPoint at;
-    at.t = t;
-    if (line.kind == Curve::Kind::Spiral) {
-        const double c = std::cos(t), s = std::sin(t), radius = line.radius + line.widening * t;
-        const Vec3 out = c * line.e1 + s * line.e2, around = c * line.e2 - s * line.e1;
-        at.p = line.centre + radius * out + line.climb * t * line.e3;
-        at.by_t = line.widening * out + radius * around + line.climb * line.e3;
-    } else {
-        at.p = pointOf(line, t);
-        at.by_t = slopeOf(line, t);
+namespace {
+
+/// Cosines and sines at the pieces of a turn.
+struct TurnSamples {
+    std::array<double, ThreadSamples::kMost> cosine{}, sine{};
+
+    TurnSamples() noexcept {
+        for (std::size_t i = 0; i < cosine.size(); ++i) {
+            cosine[i] = std::cos(kPiece * static_cast<double>(i));
+            sine[i] = std::sin(kPiece * static_cast<double>(i));
+        }
     }
+};
+const TurnSamples kTurn;
+
+/// Point and slope of a spiral, `out` and `around` being its directions there.
+void placeOn(const Curve& spiral, double t, const Vec3& out, const Vec3& around, ThreadPoint& at) noexcept {
+    const double radius = spiral.radius + spiral.widening * t;
+    at.t = t;
+    at.p = spiral.centre + radius * out + spiral.climb * t * spiral.e3;
+    at.by_t = spiral.widening * out + radius * around + spiral.climb * spiral.e3;
+}
+
+/// The rest, of point and slope; the angle being known.
+void seeAboutAxis(double phi, ThreadPoint& at) noexcept {
     const double x = at.p.x(), y = at.p.y(), u = at.by_t.x(), v = at.by_t.y();
     at.r = std::sqrt(x * x + y * y);
-    at.phi = std::atan2(y, x);
+    at.phi = phi;
     const double r = std::max(at.r, kLeastRadius);
     at.r_by_t = (x * u + y * v) / r;
     at.phi_by_t = (x * v - y * u) / (r * r);
+}
+
+/// atan(q) of a small q, as exact as the numbers are.
+double smallAngle(double q) noexcept {
+    const double q2 = q * q;
+    return q * (1.0 + q2 * (-1.0 / 3.0 + q2 * (1.0 / 5.0 + q2 * (-1.0 / 7.0 + q2 * (1.0 / 9.0)))));
+}
+constexpr double kSmallAngle = 0.03;  // then what smallAngle() leaves out is below 2e-18
+
+}  // namespace
+
+ThreadPoint threadPoint(const Curve& line, double t) noexcept {
+    ThreadPoint at;
+    if (line.kind == Curve::Kind::Spiral) {
+        const double c = std::cos(t), s = std::sin(t);
+        placeOn(line, t, c * line.e1 + s * line.e2, c * line.e2 - s * line.e1, at);
+    } else {
+        at.t = t;
+        at.p = pointOf(line, t);
+        at.by_t = slopeOf(line, t);
+    }
+    seeAboutAxis(std::atan2(at.p.y(), at.p.x()), at);
     return at;
+}
+
+/// Where the spiral lies nearly about the axis, angles are those of its own t and a little more.
+void ThreadSamples::takeTurn(const Curve& spiral, const LinePiece& piece) noexcept {
+    const double c = std::cos(piece.begin), s = std::sin(piece.begin);
+    const Vec3 e1 = c * spiral.e1 + s * spiral.e2, e2 = c * spiral.e2 - s * spiral.e1;
+    const double level = std::sqrt(e1.x() * e1.x() + e1.y() * e1.y()), begin = std::atan2(e1.y(), e1.x());
+    const bool upright = spiral.e3.z() > 0.5;
+    for (std::size_t i = 0; i < pieces_; ++i) {
+        const double turned = kPiece * static_cast<double>(i), ct = kTurn.cosine[i], st = kTurn.sine[i];
+        ThreadPoint& at = points_[i];
+        placeOn(spiral, piece.begin + turned, ct * e1 + st * e2, ct * e2 - st * e1, at);
+        const double x = (ct * e1.x() - st * e1.y()) / level, y = (st * e1.x() + ct * e1.y()) / level;
+        const double along = at.p.x() * x + at.p.y() * y, aside = at.p.y() * x - at.p.x() * y;
+        const bool near = upright && std::abs(aside) < kSmallAngle * along;
+        seeAboutAxis(near ? begin + turned + smallAngle(aside / along) : std::atan2(at.p.y(), at.p.x()), at);
+    }
 }
 
 void ThreadSamples::take(const Curve& line, const LinePiece& piece) noexcept {
@@ -237,13 +314,18 @@ void ThreadSamples::take(const Curve& line, const LinePiece& piece) noexcept {
                            ? kStraightPieces
                            : std::max(kFewestPieces, static_cast<int>(std::ceil(span / kPiece - 1e-9)));
     pieces_ = std::min<std::size_t>(static_cast<std::size_t>(pieces), kMost);
-    for (std::size_t i = 0; i < pieces_; ++i)
-        points_[i] = threadPoint(line, piece.begin + span * static_cast<double>(i) / static_cast<double>(pieces_));
+    if (line.kind == Curve::Kind::Spiral && pieces > kFewestPieces)
+        takeTurn(line, piece);
+    else
+        for (std::size_t i = 0; i < pieces_; ++i)
+            points_[i] = threadPoint(line, piece.begin + span * static_cast<double>(i) / static_cast<double>(pieces_));
     points_[pieces_] = threadPoint(line, piece.end);
 }
 
 double searchAlongThread(const Curve& edge, const LinePiece& piece, const ThreadSamples& samples, const Lump& lump,
                          double reach, Touches& touches) noexcept {
+    const double bound = boundOfHelix(edge, piece, lump);
+    if (bound > reach) return bound;
     const Walk walk(edge, piece, lump);
     if (walk.least() > reach) return walk.least();
     return ThreadSearch(walk, reach, touches).search(piece, samples);

@@ -21,7 +21,7 @@ ThreadPoint threadPoint(const Curve& line, double t) noexcept;  // rt-safe
 /// Points along a piece of a line, which serve for all lumps that it meets.
 class ThreadSamples {
 public:
-    static constexpr std::size_t kMost = 24;  // pieces of a turn
+    static constexpr std::size_t kMost = 16;  // pieces of a turn
 
     /// rt-safe
     void take(const Curve& line, const LinePiece& piece) noexcept;
@@ -29,6 +29,8 @@ public:
     const ThreadPoint& operator[](std::size_t i) const noexcept { return points_[i]; }
 
 private:
+    void takeTurn(const Curve& spiral, const LinePiece& piece) noexcept;
+
     std::size_t pieces_ = 0;
     std::array<ThreadPoint, kMost + 1> points_;
 };

@@ -18,21 +18,21 @@ constexpr double kNearAxis = 0.65;  // of a pitch inside the crests of a nut: th
 
 constexpr double kSame = 1e-12;  // [m]
 
-struct Range {
+struct Span {
     double low, high;
 
-    Range within(const Range& other) const { return {std::max(low, other.low), std::min(high, other.high)}; }
+    Span within(const Span& other) const { return {std::max(low, other.low), std::min(high, other.high)}; }
     bool isEmpty() const { return !(high > low); }
     /// Where base + slope x lies in this; of a constant all x or none.
-    Range where(double base, double slope) const {
+    Span where(double base, double slope) const {
         constexpr double kAll = std::numeric_limits<double>::infinity();
-        if (slope == 0.0) return base >= low - kSame && base <= high + kSame ? Range{-kAll, kAll} : Range{0.0, 0.0};
+        if (slope == 0.0) return base >= low - kSame && base <= high + kSame ? Span{-kAll, kAll} : Span{0.0, 0.0};
         const double a = (low - base) / slope, b = (high - base) / slope;
         return {std::min(a, b), std::max(a, b)};
     }
 };
 
-Curve spiral(const Range& t, double radius, double widening, double z, double climb) {
+Curve spiral(const Span& t, double radius, double widening, double z, double climb) {
     Curve curve;
     curve.kind = Curve::Kind::Spiral;
     curve.centre = {0.0, 0.0, z};
@@ -63,15 +63,15 @@ public:
     ThreadEdges(const ThreadForm& form, SmoothSolid& solid) : form_(form), lead_(form.lead()), solid_(solid) {}
 
     /// Along both edges of the crests, which are at ±half, at a radius.
-    void alongCrests(double radius, double half, const Range& z) {
+    void alongCrests(double radius, double half, const Span& z) {
         for (const double zeta : {-half, half})
             add(spiral({(z.low - zeta) / lead_, (z.high - zeta) / lead_}, radius, 0.0, zeta, lead_));
     }
     /// Where the plane at z cuts the profile between two radii.
-    void acrossPlane(double z, const Range& r) {
+    void acrossPlane(double z, const Span& r) {
         if (r.low > r.high) return;
         for (const ThreadForm::Line& line : form_.lines()) {
-            const Range zeta = Range{line.begin, line.end}.within(r.where(line.at_zero, line.slope));
+            const Span zeta = Span{line.begin, line.end}.within(r.where(line.at_zero, line.slope));
             // r = at_zero + slope (z - lead t)
             if (!zeta.isEmpty())
                 add(spiral({(z - zeta.high) / lead_, (z - zeta.low) / lead_}, line.at_zero + line.slope * z,
@@ -79,12 +79,12 @@ public:
         }
     }
     /// Where the cone r = base + slope z cuts the profile between two heights.
-    void acrossCone(double base, double slope, const Range& z) {
+    void acrossCone(double base, double slope, const Span& z) {
         for (const ThreadForm::Line& line : form_.lines()) {
             // at_zero + line.slope (z - lead t) = base + slope z
             const double at_zero = (line.at_zero - base) / (slope - line.slope);
             const double climb = -line.slope * lead_ / (slope - line.slope);
-            const Range t = z.where(at_zero, climb).within(Range{line.begin, line.end}.where(at_zero, climb - lead_));
+            const Span t = z.where(at_zero, climb).within(Span{line.begin, line.end}.where(at_zero, climb - lead_));
             if (!t.isEmpty()) add(spiral(t, base + slope * at_zero, slope * climb, at_zero, climb));
         }
     }
@@ -98,7 +98,7 @@ public:
             return;
         }
         const double half = form_.halfRidge(radius);
-        const Range zeta = within ? Range{-half, half} : Range{half, form_.pitch - half};
+        const Span zeta = within ? Span{-half, half} : Span{half, form_.pitch - half};
         add(spiral({(z - zeta.high) / lead_, (z - zeta.low) / lead_}, radius, 0.0, z, 0.0));
     }
 

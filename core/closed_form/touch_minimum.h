@@ -7,7 +7,8 @@
 #include "core/closed_form/touch_search.h"
 
 // What searches for touches share. A walk is a lump's function along a line: points of it, of which it tells values and
-// slopes of each face and the highest face.
+// slopes of each face and the highest face, and of how near to a
+// minimum is enough.
 
 namespace passung::closed_form {
 
@@ -37,9 +38,10 @@ SampleOn<Walk> sampleAt(const Walk& walk, double t) noexcept {
 
 /// The zero of a function between two places where its sign differs, by false position after Illinois.
 template <class Function>
-double zeroBetween(double low, double high, double at_low, double at_high, Function function) noexcept {
+double zeroBetween(double low, double high, double at_low, double at_high, Function function,
+                   double closed = kClosed) noexcept {
     int side = 0;
-    for (int i = 0; i < kSteps && high - low > kClosed; ++i) {
+    for (int i = 0; i < kSteps && high - low > closed; ++i) {
         double t = at_high == at_low ? 0.5 * (low + high) : (low * at_high - high * at_low) / (at_high - at_low);
         if (!(t > low && t < high)) t = 0.5 * (low + high);
         const double value = function(t);
@@ -66,13 +68,17 @@ Touch minimumBetween(const Walk& walk, SampleOn<Walk> low, SampleOn<Walk> high) 
     SampleOn<Walk> here = low;
     for (int i = 0; i < kSteps; ++i) {
         const bool one_face = low.face == high.face;
-        const double t = one_face ? zeroBetween(low.at.t, high.at.t, low.slope, high.slope,
-                                                [&](double at) { return walk.slope(*low.face, walk.at(at)); })
-                                  : zeroBetween(low.at.t, high.at.t, walk.value(*high.face, low.at) - low.value,
-                                                high.value - walk.value(*low.face, high.at), [&](double at) {
-                                                    const auto p = walk.at(at);
-                                                    return walk.value(*high.face, p) - walk.value(*low.face, p);
-                                                });
+        const double t = one_face ? zeroBetween(
+                                        low.at.t, high.at.t, low.slope, high.slope,
+                                        [&](double at) { return walk.slope(*low.face, walk.at(at)); }, Walk::kEnough)
+                                  : zeroBetween(
+                                        low.at.t, high.at.t, walk.value(*high.face, low.at) - low.value,
+                                        high.value - walk.value(*low.face, high.at),
+                                        [&](double at) {
+                                            const auto p = walk.at(at);
+                                            return walk.value(*high.face, p) - walk.value(*low.face, p);
+                                        },
+                                        Walk::kEnough);
         here = sampleAt(walk, t);
         const double of_low = walk.value(*low.face, here.at);
         if (here.value > of_low + 1e-15 && here.face != low.face && here.face != high.face) {

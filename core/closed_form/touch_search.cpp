@@ -93,6 +93,8 @@ double slopeOn(const Face& face, const Curve& line, double t) noexcept {
 /// A lump's function along a line.
 class Walk {
 public:
+    static constexpr double kEnough = kClosed;
+
     struct Point {
         double t = 0.0;
         Vec3 p;

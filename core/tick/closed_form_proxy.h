@@ -16,7 +16,8 @@ namespace passung::tick {
 /// Derivation: pose_solver.h. Its energy is the coupling's: with ρ² = K_φ/K, ½K(|x_H - x|² + ρ²|φ|²). Its multipliers
 /// λ_i are the contacts' forces: K λ_i along normal n_i, at point P_i. So a look of the solver is a sub-step of either
 /// method, and what each of them builds on points is this here:
-///   god_object            sweep: kMostLooks looks, each under all contacts within reach.
+///   god_object            sweep: kMostLooks looks, each under all contacts within reach; kHeuristicLooks with threads,
+///                         whose looks take longer.
 ///   god_object_heuristic  #1 contacts at the last proxy; #2 relief of overlap, the deepest first, by kRepair a tick;
 ///                         #3 the way to the hand; #4 the motion that the contacts leave of it: kHeuristicLooks looks.
 /// Where the looks end before the proxy has come to rest it stays at the last pose without overlap, and goes on in the
@@ -43,6 +44,7 @@ struct ClosedFormMemory {
     closed_form::PoseSolver solver{{}};
     std::vector<closed_form::ContactSearch> at_hand;
     closed_form::PairContacts found;
+    bool has_thread = false;
 };
 
 /// Memory for the model's pairs. `model` outlives it.
