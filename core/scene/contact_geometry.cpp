@@ -78,6 +78,11 @@ GeometryChoice geometryOf(const SceneSpec& scene) {
 std::optional<std::string> geometryProblem(const SceneSpec& scene) {
     const PartSpec* held = heldPart(scene);
     const Geometry asked = scene.contact.geometry;
+    const auto thread = std::find_if(scene.parts.begin(), scene.parts.end(), isThread);
+    if (thread != scene.parts.end() && scene.parts.size() > 1 && geometryOf(scene).geometry == Geometry::Field)
+        return "must not be distance fields with a thread, whose field would take minutes: needs a god object without "
+               "friction and proxy_filter_hz (" +
+               thread->name + ")";
     if ((asked != Geometry::ClosedForm && asked != Geometry::Surface) || held == nullptr) return std::nullopt;
     for (const PartSpec& part : scene.parts) {
         if (part.held) continue;

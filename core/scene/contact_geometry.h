@@ -22,7 +22,7 @@ GeometryChoice geometryOfPair(const PartSpec& held, const PartSpec& obstacle, co
 /// Of a scene, whose pairs all have one: that which each of them can have.
 GeometryChoice geometryOf(const SceneSpec& scene);
 
-/// What has to hold for the geometry that the scene names, as a requirement; nothing if it does.
+/// What has to hold for the geometry that the scene names or gets, as a requirement; nothing if it does.
 std::optional<std::string> geometryProblem(const SceneSpec& scene);
 
 /// "penalty", "god_object_heuristic", "god_object".

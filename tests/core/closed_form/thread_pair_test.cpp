@@ -56,17 +56,16 @@ struct BoltInNut {
     }
 
     ConstrainedPose follow(const Pose& hand) {
-        ConstrainedPose found =
-            nut_is_held ? solver.solve(X.inverse(), hand.inverse(), memory) : solver.solve(X, hand, memory);
-        X = nut_is_held ? found.X_WG.inverse() : found.X_WG;
+        const ConstrainedPose found = solver.solve(ofHeld(X), ofHeld(hand), memory);
+        X = ofHeld(found.X_WG);
         return found;
     }
+    /// The held part's where the bolt is at X in the nut's frame.
+    Pose ofHeld(const Pose& pose) const { return nut_is_held ? pose.inverse() : pose; }
     /// Deepest overlap on the way of the last tick: at each pose without overlap, and between them.
     double overlapOnWay(const ThreadReference& truth) const {
         double most = 0.0;
-        const auto at = [&](const Pose& pose) {
-            most = std::max(most, truth.overlap(nut_is_held ? pose.inverse() : pose));
-        };
+        const auto at = [&](const Pose& pose) { most = std::max(most, truth.overlap(ofHeld(pose))); };
         const std::span<const Pose> way = solver.way();
         for (std::size_t i = 0; i < way.size(); ++i) {
             at(way[i]);
@@ -239,11 +238,10 @@ TEST_P(ThreadPaths, OverlapNowhereCatchNowhereAndHoldTheLeastEnergy) {
                     if (tick % 10 == 0) deepest = std::max(deepest, scene.overlapOnWay(truth));
                     if (mouth) continue;
                     const Vec3 force = kStiffness * found.pull.head<3>();
-                    if (tick > 0)
-                        beyond = std::max(beyond, (force - before).norm() - kStiffness * (X_WH.p - X_before.p).norm());
+                    const double went = (scene.ofHeld(X_WH).p - scene.ofHeld(X_before).p).norm();
+                    if (tick > 0) beyond = std::max(beyond, (force - before).norm() - kStiffness * went);
                     before = force;
-                    const double hand_went =
-                        (X_WH.p - X_before.p).norm() + (X_WH.q * X_before.q.conjugate()).vec().norm();
+                    const double hand_went = went + (X_WH.q * X_before.q.conjugate()).vec().norm();
                     still = !stays && hand_went > 1e-6 && (scene.X.p - X_last.p).norm() == 0.0 &&
                                     scene.X.q.coeffs() == X_last.q.coeffs()
                                 ? still + 1
