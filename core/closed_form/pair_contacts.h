@@ -31,7 +31,7 @@ struct Contact {
 };
 
 /// Contacts of a pair at one pose. Full: an overlap may be unknown.
-using PairContacts = FixedList<Contact, 512>;
+using PairContacts = FixedList<Contact, 768>;
 
 /// The most that any contact overlaps [m], ≥ 0.
 double overlapOf(const PairContacts& contacts) noexcept;

@@ -37,6 +37,7 @@ struct ConstrainedPose {
 };
 
 inline constexpr int kMostLooks = 24;
+inline constexpr int kThreadLooks = 12;         // the same with threads, whose looks take longer
 inline constexpr double kLongestLook = 2.5e-4;  // of |u| in a look near an obstacle [m]
 inline constexpr double kLongestWay = 7e-4;     // of any point of the held part in such a look [m]
 inline constexpr double kReach = 1e-3;          // within which contacts become rows: no point goes so far in a look [m]

@@ -32,8 +32,8 @@ void note(const closed_form::ConstrainedPose& found, Report& report) noexcept {
 }
 
 int mostLooks(const TickModel& model, const ClosedFormMemory& memory) noexcept {
-    const bool all = model.contact.method == scene::ContactMethod::GodObject && !memory.has_thread;
-    return all ? closed_form::kMostLooks : kHeuristicLooks;
+    if (memory.has_thread) return closed_form::kThreadLooks;
+    return model.contact.method == scene::ContactMethod::GodObject ? closed_form::kMostLooks : kHeuristicLooks;
 }
 
 std::vector<closed_form::SolidPair> pairsOf(const TickModel& model) {

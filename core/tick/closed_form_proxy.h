@@ -16,10 +16,10 @@ namespace passung::tick {
 /// Derivation: pose_solver.h. Its energy is the coupling's: with ρ² = K_φ/K, ½K(|x_H - x|² + ρ²|φ|²). Its multipliers
 /// λ_i are the contacts' forces: K λ_i along normal n_i, at point P_i. So a look of the solver is a sub-step of either
 /// method, and what each of them builds on points is this here:
-///   god_object            sweep: kMostLooks looks, each under all contacts within reach; kHeuristicLooks with threads,
-///                         whose looks take longer.
+///   god_object            sweep: kMostLooks looks, each under all contacts within reach.
 ///   god_object_heuristic  #1 contacts at the last proxy; #2 relief of overlap, the deepest first, by kRepair a tick;
 ///                         #3 the way to the hand; #4 the motion that the contacts leave of it: kHeuristicLooks looks.
+///   Either with threads: kThreadLooks.
 /// Where the looks end before the proxy has come to rest it stays at the last pose without overlap, and goes on in the
 /// next tick (kIterationLimit).
 /// Limit cases: nothing within reach → G = H. A plane → G is H's projection onto it. A start in overlap: as there.

@@ -97,7 +97,7 @@ inline constexpr std::array kSceneKeys{
     Key{"shape.thread_nut", "diameter", Length, above(0), "", "!", "Diameter over the roots; origin at the centre of the thread's mouth, body below z = 0."},
     Key{"shape.thread_nut", "pitch", Length, above(0), "", "!", "Way along the axis from one turn to the next; at most a quarter of the diameter."},
     Key{"shape.thread_nut", "width", Length, above(0), "", "!", "Width across flats, two of which are normal to x."},
-    Key{"shape.thread_nut", "height", Length, above(0), "", "!", "Extent along z, 1 to 100 pitches."},
+    Key{"shape.thread_nut", "height", Length, above(0), "", "!", "Extent along z, 1 to 12 pitches."},
     Key{"shape.thread_nut", "chamfer", Length, atLeast(0), "", "0", "45 degree chamfer at both mouths, from the crests on; 0 = sharp."},
     Key{"shape.fit", "fit", Text, kAny, "", "(none: the diameter is given)", "Hole and shaft by ISO 286, such as \"H7/g6\": a peg takes the shaft, a plate the hole. Holes D, E, F, G, H, JS, K, M, N, P; shafts d, e, f, g, h, js, k, m, n, p, r, s; grades 01, 0, 1 to 18."},
     Key{"shape.fit", "nominal_diameter", Length, above(0), "", "(none)", "Nominal diameter of the fit, at most 500 mm."},

@@ -28,7 +28,7 @@ struct Size {
     double diameter, pitch, chamfer;  // of the nut [m]
 };
 const std::array kSizes{Size{.008, .00125, .0}, Size{.008, .00125, .0009}, Size{.012, .0015, .0006},
-                        Size{.02, .0045, .0}, Size{.002, .0004, .0002}};
+                        Size{.02, .0045, .0},   Size{.002, .0004, .0002},  Size{.012, .001, .0}};
 
 struct BoltInNut {
     shape::ThreadBolt bolt;
@@ -56,7 +56,7 @@ struct BoltInNut {
     }
 
     ConstrainedPose follow(const Pose& hand) {
-        const ConstrainedPose found = solver.solve(ofHeld(X), ofHeld(hand), memory);
+        const ConstrainedPose found = solver.solve(ofHeld(X), ofHeld(hand), memory, kThreadLooks);
         X = ofHeld(found.X_WG);
         return found;
     }

@@ -575,6 +575,7 @@ TEST(ShapeValidation, NamesEachValueThatCannotBe) {
     EXPECT_EQ(keysOf(ThreadBolt{0.008, 0.001, 0.2, 0.0}), Keys{"length"});
     EXPECT_EQ(keysOf(ThreadBolt{0.008, 0.001, 0.02, 0.004}), Keys{"chamfer"});
     EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.008, 0.006, 0.0}), Keys{"diameter"});
+    EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.013, 0.0121, 0.0}), Keys{"height"});
     EXPECT_EQ(keysOf(ThreadNut{0.008, nan, 0.013, 0.006, 0.0}), Keys{"pitch"});
     EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.013, 0.006, 0.0031}), Keys{"chamfer"});  // mouths meet
     EXPECT_EQ(keysOf(SquareBorePlate{0.06, 0.05, 0.03, 0.06, 0.02, 0.02, 0.0}), Keys{"pocket_width"});

@@ -22,7 +22,7 @@ using scene::ContactMethod;
 constexpr double kPlay = 30e-6;  // [m]
 const shape::ThreadBolt kBolt{.008 - 2.0 * kPlay, .00125, .02, .0009};
 const shape::ThreadNut kNut{.008, .00125, .013, .0065, .0008};
-constexpr double kStart = -.001;  // [m]
+constexpr double kStart = -.003;  // [m]: two turns deep
 
 scene::SceneSpec boltInNut(ContactMethod method) {
     const double turned = 2.0 * std::numbers::pi * kStart / kBolt.pitch;
