@@ -54,6 +54,19 @@ public:
             return std::sqrt(positive(a * a + b * b - 2.0 * c * a * b) / (1.0 - c * c));  // the line of both
         });
     }
+    /// An outside that is convex in each half plane about the z axis only, by the distance from it in that. Its second
+    /// derivatives are above -bend, so that within the hull it exceeds the corners' by no more than ½ bend · radius².
+    template <class Distance>
+    void bent(double bend, const Distance& distance) {
+        double radius2 = 0.0;
+        for (const Vec3& corner : corners_) radius2 = std::max(radius2, (corner - middle).squaredNorm());
+        set([&](const Vec3& p) { return distance(p) + 0.5 * bend * radius2; });
+    }
+    double radius() const {
+        double radius2 = 0.0;
+        for (const Vec3& corner : corners_) radius2 = std::max(radius2, (corner - middle).squaredNorm());
+        return std::sqrt(radius2);
+    }
     void besideBox(double half_width, double half_depth, double low, double high) {
         beyond({1, 0, 0}, half_width);
         beyond({-1, 0, 0}, half_width);
@@ -150,12 +163,13 @@ void addBore(double radius, double floor, Bound& bound) {
 
 /// The room between the slopes of a mouth: r ≤ radius + s with s = z + chamfer ≥ 0. The distance, or a little more
 /// below it.
+double mouthDistance(double radius, double chamfer, const Vec3& p) {
+    const double lift = positive(-(p.z() + chamfer));
+    const double over = positive(radial(p) - radius - (p.z() + chamfer + lift));
+    return lengthOf(0.5 * over, lift + 0.5 * over);
+}
 void addRoundMouth(double radius, double chamfer, Bound& bound) {
-    bound.set([=](const Vec3& p) {
-        const double lift = positive(-(p.z() + chamfer));
-        const double over = positive(radial(p) - radius - (p.z() + chamfer + lift));
-        return lengthOf(0.5 * over, lift + 0.5 * over);
-    });
+    bound.set([=](const Vec3& p) { return mouthDistance(radius, chamfer, p); });
 }
 
 /// Room between x_low and x_high, |y| ≤ half_y, above `floor`.
@@ -176,6 +190,41 @@ void addSlotMouth(double x_low, double x_high, double half_y, double chamfer, bo
         const double ey = positive(std::abs(p.y()) - half_y - s);
         return Vec3(0.5 * ex, 0.5 * ey, lift + 0.5 * std::max(ex, ey)).norm();
     });
+}
+
+/// Between two ridges of a thread, by its profile in half planes (ISO 68-1): a trapezium with one open side. `sign`: 1
+/// of a bolt, whose grooves open outwards, -1 of a nut. At `bottom` it is 2 `half` wide, and 1/√3 wider for each length
+/// from there on either side.
+void addGroove(double pitch, double bottom, double half, double middle, double sign, Bound& bound) {
+    const auto heightOf = [&](const Vec3& p, double near) {  // over the middle of a ridge, the angle being near one
+        double phi = std::atan2(p.y(), p.x());
+        phi += 2.0 * std::numbers::pi * std::round((near - phi) / (2.0 * std::numbers::pi));
+        return p.z() - middle - pitch * phi / (2.0 * std::numbers::pi);
+    };
+    const double r = radial(bound.middle), least = r - bound.radius();
+    if (!(least > 0.5 * r)) return;
+    const double near = std::atan2(bound.middle.y(), bound.middle.x());
+    const double groove = pitch * std::round(heightOf(bound.middle, near) / pitch);
+    const double lead = pitch / (2.0 * std::numbers::pi);
+    bound.bent((1.0 + lead / least) / least, [&](const Vec3& p) {
+        const double out = sign * (radial(p) - bottom), aside = std::abs(heightOf(p, near) - groove) - half;
+        const double beyond = 0.5 * (std::numbers::sqrt3 * aside - out);  // the flank
+        if (beyond <= 0.0 && out >= 0.0) return 0.0;
+        if (aside <= 0.0) return -out;
+        const double along = 0.5 * (std::numbers::sqrt3 * out + aside);  // the flank, from its corner on
+        return along >= 0.0 ? beyond : lengthOf(aside, out);
+    });
+}
+
+double threadDepth(double pitch) { return 0.625 * 0.5 * std::numbers::sqrt3 * pitch; }
+
+void add(const ThreadBolt& bolt, Bound& bound) {
+    const double radius = 0.5 * bolt.diameter;
+    const Vec3 out = outwards(bound.middle);
+    bound.beyond(out, radius);
+    bound.aboveAndBelow(0.0, bolt.length);
+    if (bolt.chamfer > 0.0) bound.beyond(kHalfRoot * (out - Vec3(0, 0, 1)), kHalfRoot * (radius - bolt.chamfer));
+    addGroove(bolt.pitch, radius - threadDepth(bolt.pitch), bolt.pitch / 8.0, 0.5 * bolt.pitch, 1.0, bound);
 }
 
 template <class Plate>
@@ -205,6 +254,23 @@ void add(const KeyedBorePlate& plate, Bound& bound) {
     if (!(plate.chamfer > 0.0)) return;
     addRoundMouth(radius, plate.chamfer, bound);
     addSlotMouth(0.0, reach, half_key, plate.chamfer, true, bound);
+}
+
+void add(const ThreadNut& nut, Bound& bound) {
+    const double radius = 0.5 * nut.diameter, crest = radius - threadDepth(nut.pitch);
+    addBore(crest, -std::numeric_limits<double>::infinity(), bound);
+    bound.aboveAndBelow(-nut.height, 0.0);
+    for (int i = 0; i < 6; ++i) {
+        const double phi = i * std::numbers::pi / 3.0;
+        bound.beyond({std::cos(phi), std::sin(phi), 0.0}, 0.5 * nut.width);
+    }
+    if (nut.chamfer > 0.0) {
+        addRoundMouth(crest, nut.chamfer, bound);
+        bound.set([&](const Vec3& p) {
+            return mouthDistance(crest, nut.chamfer, {p.x(), p.y(), -nut.height - p.z()});
+        });
+    }
+    addGroove(nut.pitch, radius, nut.pitch / 16.0, 0.0, -1.0, bound);
 }
 
 double deepest(const Cylinder& c, const AxialExtent& e) {

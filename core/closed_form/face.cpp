@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace passung::closed_form {
 
@@ -46,6 +47,7 @@ Face about(Face::Kind kind, const Vec3& origin, const Vec3& axis, double radius,
     face.axis = axis.normalized();
     face.radius = radius;
     face.hollow = hollow;
+    face.about_z = face.axis == Vec3::UnitZ() && origin.x() == 0.0 && origin.y() == 0.0;
     return face;
 }
 
@@ -68,10 +70,43 @@ Face sphere(const Vec3& centre, double radius) {
     return about(Face::Kind::Sphere, centre, Vec3::UnitZ(), radius, false);
 }
 
+Face flank(double pitch, double radius, double middle, bool above, bool hollow, double least) {
+    const double quarter = 0.25 * pitch, lead = pitch / (2.0 * std::numbers::pi), cosine = 0.5 * std::numbers::sqrt3;
+    Face face = about(Face::Kind::Helicoid, {0.0, 0.0, above ? middle + quarter : middle - quarter}, Vec3::UnitZ(),
+                      radius, hollow);
+    const double scale = 1.0 / std::sqrt(1.0 + cosine * cosine * lead * lead / (least * least));
+    face.along = scale * (above ? cosine : -cosine);
+    face.out = scale * (hollow ? -0.5 : 0.5);
+    face.pitch = pitch;
+    return face;
+}
+
 Face torus(const Vec3& centre, const Vec3& axis, double radius, double tube) {
     Face face = about(Face::Kind::Torus, centre, axis, radius, false);
     face.tube = tube;
     return face;
+}
+
+namespace {
+
+double leadOf(const Face& face) noexcept { return face.pitch / (2.0 * std::numbers::pi); }
+
+}  // namespace
+
+double fromFlank(const Face& flank, double z, double phi) noexcept {
+    const double up = z - flank.origin.z() - leadOf(flank) * phi;
+    const double away = flank.along > 0.0 ? up : -up;
+    return away - flank.pitch * std::floor(away / flank.pitch + 0.25);
+}
+
+double fromRidge(const Face& flank, double z, double phi) noexcept {
+    const double away = fromFlank(flank, z, phi) + 0.25 * flank.pitch;
+    const double nearest = away > 0.5 * flank.pitch ? away - flank.pitch : away;
+    return flank.along > 0.0 ? nearest : -nearest;
+}
+
+double beforeNextRidge(const Face& flank, double z, double phi) noexcept {
+    return std::abs(flank.along) * (0.75 * flank.pitch - fromFlank(flank, z, phi));
 }
 
 double valueOf(const Face& face, const Vec3& p) noexcept {
@@ -80,6 +115,9 @@ double valueOf(const Face& face, const Vec3& p) noexcept {
             return face.axis.dot(p - face.origin);
         case Face::Kind::Sphere:
             return (p - face.origin).norm() - face.radius;
+        case Face::Kind::Helicoid:
+            return face.out * (std::sqrt(p.x() * p.x() + p.y() * p.y()) - face.radius) +
+                   std::abs(face.along) * fromFlank(face, p.z(), std::atan2(p.y(), p.x()));
         default:
             break;
     }
@@ -112,6 +150,10 @@ Vec3 gradientAt(const Face& face, const Vec3& p, const AboutAxis& at) noexcept {
             return signOf(face) * at.away;
         case Face::Kind::Cone:
             return signOf(face) * (face.out * at.away + face.along * face.axis);
+        case Face::Kind::Helicoid: {
+            const Vec3 around(-at.away.y(), at.away.x(), 0.0);
+            return face.out * at.away + face.along * (face.axis - leadOf(face) / std::max(at.r, kOnAxis) * around);
+        }
         case Face::Kind::Torus:
             break;
     }
@@ -144,6 +186,14 @@ Jet jetOf(const Face& face, const Vec3& p) noexcept {
         case Face::Kind::Cone:
             jet.hessian = signOf(face) * face.out * aroundAxis(face, at);
             break;
+        case Face::Kind::Helicoid: {
+            if (at.r <= kOnAxis) break;
+            const Vec3 around(-at.away.y(), at.away.x(), 0.0);
+            const Mat3 mixed = at.away * around.transpose();
+            jet.hessian = face.out * aroundAxis(face, at) +
+                          face.along * leadOf(face) / (at.r * at.r) * (mixed + mixed.transpose());
+            break;
+        }
         case Face::Kind::Torus: {
             const double x = at.r - face.radius, length = std::hypot(x, at.z);
             if (length <= kOnAxis) break;

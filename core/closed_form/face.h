@@ -7,20 +7,25 @@ namespace passung::closed_form {
 /// A smooth face of a solid as a function of a point: its signed distance to the whole plane, cylinder, cone, sphere or
 /// torus, positive outside the material. Its gradient has length 1. Cylinders and cones may be hollow: material outside
 /// of them.
+/// A helicoid is a thread's flank, about the z axis: r - radius = ∓ z' / slope with z' = z - lead φ - origin.z. Its
+/// function is scaled so that its gradient is at most 1 long where the thread's other faces do not count. It jumps
+/// amid the ridges: there the flank of the next turn begins to count.
 struct Face {
-    enum class Kind { Plane, Cylinder, Cone, Sphere, Torus };
+    enum class Kind { Plane, Cylinder, Cone, Sphere, Torus, Helicoid };
 
     Kind kind = Kind::Plane;
     Vec3 origin = Vec3::Zero();     // on the plane; on the axis; the centre. Of a cone: where its radius is `radius`
     Vec3 axis = Vec3::UnitZ();      // unit. Of a plane: its normal, out of the material
     double radius = 0.0;            // of a torus: of the ring's circle [m]
     double tube = 0.0;              // of a torus: radius of its tube [m]
-    double along = 0.0, out = 1.0;  // of a cone: parts of the normal along the axis and away from it
+    double along = 0.0, out = 1.0;  // of a cone, a helicoid: parts of the gradient along the axis and away from it
+    double pitch = 0.0;             // of a helicoid [m]
     bool hollow = false;
+    bool about_z = false;  // its axis is the z axis
 
     bool isPlane() const noexcept { return kind == Kind::Plane; }
     /// Its function is convex: along a straight line it has one minimum.
-    bool isConvex() const noexcept { return !hollow && kind != Kind::Torus; }
+    bool isConvex() const noexcept { return !hollow && kind != Kind::Torus && kind != Kind::Helicoid; }
 };
 
 Face plane(const Vec3& origin, const Vec3& normal);
@@ -29,6 +34,19 @@ Face cylinder(const Vec3& origin, const Vec3& axis, double radius, bool hollow =
 Face cone(const Vec3& origin, const Vec3& axis, double radius, double slope, bool hollow = false);
 Face sphere(const Vec3& centre, double radius);
 Face torus(const Vec3& centre, const Vec3& axis, double radius, double tube);
+
+/// The flank of a ridge whose middle is at z = lead φ + `middle` and which is half as wide as the pitch at `radius`;
+/// above the ridge or below it. It widens by 1/√3 a length inwards, or outwards (hollow). `least`: radius from which on
+/// the gradient is at most 1 long.
+Face flank(double pitch, double radius, double middle, bool above, bool hollow, double least);
+
+// Of a flank at a height and an angle about the axis. rt-safe.
+/// From its middle line, outwards along the axis: from the middle of its ridge to that of the next [m].
+double fromFlank(const Face& flank, double z, double phi) noexcept;
+/// From the middle of the nearest ridge, positive above [m].
+double fromRidge(const Face& flank, double z, double phi) noexcept;
+/// A way that the point does not go before the flank of another turn counts [m].
+double beforeNextRidge(const Face& flank, double z, double phi) noexcept;
 
 /// Value and derivatives at a point; frame of the face. [m], 1, [1/m]
 struct Jet {

@@ -22,7 +22,13 @@ Curve moved(const Pose& X, const Curve& line) noexcept {
                 .e1 = X.q * line.e1,
                 .end = line.end,
                 .thickness = line.thickness};
-    if (line.kind == Curve::Kind::Circle) there.e2 = X.q * line.e2;
+    if (line.kind == Curve::Kind::Circle || line.kind == Curve::Kind::Spiral) there.e2 = X.q * line.e2;
+    if (line.kind != Curve::Kind::Spiral) return there;
+    there.e3 = X.q * line.e3;
+    there.begin = line.begin;
+    there.radius = line.radius;
+    there.widening = line.widening;
+    there.climb = line.climb;
     return there;
 }
 
@@ -209,11 +215,18 @@ void ContactSearch::addMeetings(bool of_held) {
     const SmoothSolid& lumps = of_held ? *pair_.obstacle : *pair_.held;
     for (const bool core : {false, true}) {
         const std::size_t count = core ? lines.cores.size() : lines.edges.size();
-        for (std::size_t line = 0; line < count; ++line)
-            for (std::size_t lump = 0; lump < lumps.lumps.size(); ++lump)
-                meetings_.push_back(
-                    {.name = {of_held, core, static_cast<std::uint16_t>(line), static_cast<std::uint16_t>(lump)},
-                     .touches = !core || canTouch(lines.cores[line], lumps.lumps[lump])});
+        for (std::size_t line = 0; line < count; ++line) {
+            const Curve& curve = (core ? lines.cores : lines.edges)[line];
+            for (std::size_t piece = 0; piece < piecesOf(curve); ++piece)
+                for (std::size_t at = 0; at < lumps.lumps.size(); ++at) {
+                    const Lump& lump = lumps.lumps[at];
+                    meetings_.push_back(
+                        {.name = {of_held, core, static_cast<std::uint16_t>(line), static_cast<std::uint16_t>(at)},
+                         .piece = static_cast<std::uint16_t>(piece),
+                         .of_thread = !core && (curve.kind == Curve::Kind::Spiral || hasFlank(lump)),
+                         .touches = !core || canTouch(curve, lump)});
+                }
+        }
     }
 }
 
@@ -221,6 +234,7 @@ void ContactSearch::moveTo(const Pose& X_WH) noexcept {
     way_ += (X_WH.p - X_last_.p).norm();
     turn_ += rotationVector(X_WH.q * X_last_.q.conjugate()).norm();
     X_last_ = X_WH;
+    sampled_ = nullptr;
 }
 
 double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept {
@@ -246,7 +260,7 @@ ContactSearch::Overlap ContactSearch::overlapAt(const Pose& X_WH) noexcept {
     const PlacedPair placed(pair_, X_WH);
     Overlap overlap;
     const auto lookAt = [&](std::size_t at) {
-        const double reach = std::min(0.0, kRounding - overlap.depth);
+        const double reach = meetings_[at].of_thread ? 0.0 : std::min(0.0, kRounding - overlap.depth);
         if (!meetings_[at].touches || boundOf(meetings_[at]) > reach) return;
         Touches touches;
         look(placed, reach, true, meetings_[at], touches, [&](const Contact& contact) {
@@ -269,17 +283,31 @@ double ContactSearch::boundOf(const Meeting& meeting) const noexcept {
     return meeting.bound - way - turn * (meeting.lever + way);
 }
 
+/// Its line's points were taken at this pose, for another lump.
+bool ContactSearch::isSampled(const Meeting& meeting) const noexcept {
+    if (sampled_ == nullptr || sampled_->piece != meeting.piece) return false;
+    const TouchName &now = sampled_->name, &name = meeting.name;
+    return now.of_held == name.of_held && now.line == name.line;
+}
+
 template <class Take>
 void ContactSearch::look(const PlacedPair& placed, double reach, bool closely, Meeting& meeting, Touches& touches,
                          Take take) noexcept {
     const TouchName& name = meeting.name;
     const LineView view = placed.view(name);
     const Lump& lump = lumpOf(pair_, name);
+    const LinePiece piece = pieceOf(view.line, meeting.piece);
     double closer = -std::numeric_limits<double>::infinity();
-    meeting.bound = name.core ? searchCore(view.line, lump, reach, touches)
-                              : searchEdge(view.line, lump, reach, touches, closely ? &closer : nullptr);
+    if (meeting.of_thread) {
+        if (!isSampled(meeting)) samples_.take(view.line, piece);
+        sampled_ = &meeting;
+        meeting.bound = searchAlongThread(view.line, piece, samples_, lump, reach, touches);
+    } else {
+        meeting.bound = name.core ? searchCore(view.line, lump, reach, touches)
+                                  : searchEdge(view.line, lump, reach, touches, closely ? &closer : nullptr);
+    }
     meeting.bound = std::max(meeting.bound, closer);
-    meeting.lever = (view.line.centre - view.origin).norm() + view.line.extent();
+    meeting.lever = (piece.middle - view.origin).norm() + piece.extent;
     meeting.way = way_;
     meeting.turn = turn_;
     for (const Touch& touch : touches.all()) take(contactOf(pair_, view, name, touch));

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/closed_form/thread_search.h"
 #include "core/closed_form/touch_search.h"
 #include "core/motion/active_set.h"
 
@@ -32,7 +33,7 @@ struct Contact {
 };
 
 /// Contacts of a pair at one pose. Full: an overlap may be unknown.
-using PairContacts = FixedList<Contact, 256>;
+using PairContacts = FixedList<Contact, 768>;
 
 /// The most that any contact overlaps [m], ≥ 0.
 double overlapOf(const PairContacts& contacts) noexcept;
@@ -70,9 +71,11 @@ public:
     Overlap overlapAt(const Pose& X_WH) noexcept;
 
 private:
-    /// A line and a lump of the other part.
+    /// A piece of a line and a lump of the other part.
     struct Meeting {
         TouchName name;
+        std::uint16_t piece = 0;
+        bool of_thread = false;
         bool touches = true;           // false: of no contact, of the bound alone
         double bound = 0.0;            // of the gap, when it was looked at last [m]
         double lever = 0.0;            // of the line's points about the held part's origin, then [m]
@@ -86,12 +89,15 @@ private:
     template <class Take>
     void look(const PlacedPair& placed, double reach, bool closely, Meeting& meeting, Touches& touches,
               Take take) noexcept;
+    bool isSampled(const Meeting& meeting) const noexcept;
 
     SolidPair pair_;
     std::vector<Meeting> meetings_;
     std::size_t deepest_ = 0;  // meeting of the last overlap
     Pose X_last_;
-    double way_ = 0.0, turn_ = 0.0;  // that the held part has made [m], [rad]
+    ThreadSamples samples_;
+    const Meeting* sampled_ = nullptr;  // whose line's piece they are of, at this pose
+    double way_ = 0.0, turn_ = 0.0;     // that the held part has made [m], [rad]
 };
 
 /// What the place of a contact that was found at an earlier pose has to obey at this one: the row of the lump's highest

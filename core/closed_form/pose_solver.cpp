@@ -12,7 +12,6 @@ namespace passung::closed_form {
 
 namespace {
 
-constexpr double kReach = 1e-3;          // within which contacts become rows: no point goes farther in a look [m]
 constexpr double kSamePlace = 0.5;       // of a line's parameter: a contact that held is that one now
 constexpr int kMostTaken = 60;           // rows taken up or let go in a look
 constexpr double kAlongRidge = 0.3;      // of a unit motion: what contacts leave of it
@@ -39,6 +38,7 @@ PoseSolver::PoseSolver(std::span<const SolidPair> pairs)
     for (const SolidPair& pair : pairs) {
         searches_.emplace_back(pair);
         reach_ = std::max(reach_, reachOf(*pair.held));
+        sight_ = std::min({sight_, sightOf(*pair.held), sightOf(*pair.obstacle)});
         longest_way_ = std::min({longest_way_, 0.5 * thicknessOf(*pair.held), 0.5 * thicknessOf(*pair.obstacle)});
     }
 }
@@ -63,7 +63,7 @@ void PoseSolver::find(const Pose& X) noexcept {
     free_ = std::numeric_limits<double>::infinity();
     full_ = false;
     for (std::size_t p = 0; p < searches_.size(); ++p) {
-        free_ = std::min(free_, searches_[p].find(X, kReach, contacts_));
+        free_ = std::min(free_, searches_[p].find(X, sight_, contacts_));
         overlap_ = std::max(overlap_, overlapOf(contacts_));
         full_ = full_ || contacts_.full();
         for (const Contact& contact : contacts_.all())
@@ -102,7 +102,7 @@ void PoseSolver::remember(const Pose& X, const PoseMemory& memory) noexcept {
         if (now != nullptr) now->from.push += old.push;
         if ((now != nullptr && distance(now->from.contact, old) < kSameTouch) || old.age >= kKeptLooks) continue;
         const auto there = keptAt(pair(old.pair), X, old.contact);
-        if (!there || there->gap >= kReach || there->lean > kMostLean) continue;
+        if (!there || there->gap >= sight_ || there->lean > kMostLean) continue;
         Row kept{.from = old, .slides = false};
         kept.from.contact = *there;
         kept.from.age = old.age + 1;

@@ -37,10 +37,12 @@ struct ConstrainedPose {
 };
 
 inline constexpr int kMostLooks = 24;
+inline constexpr int kThreadLooks = 12;         // the same with threads, whose looks take longer
 inline constexpr double kLongestLook = 2.5e-4;  // of |u| in a look near an obstacle [m]
 inline constexpr double kLongestWay = 7e-4;     // of any point of the held part in such a look [m]
 inline constexpr double kMostRise = 1e-7;       // of any point's arc over its chord in such a look [m]
 inline constexpr double kMostAstray = 6e-5;     // of |u| of looks since the last pose without overlap [m]
+inline constexpr double kReach = 1e-3;          // within which contacts become rows: no point goes so far in a look [m]
 inline constexpr double kRepair = 1e-4;         // of overlap that was there before, in a solve [m]
 inline constexpr double kKeptOverlap = 5e-8;    // [m]
 inline constexpr double kStillMoving = 3e-7;    // of |u| in a look: the error left is of second order [m]
@@ -108,6 +110,7 @@ private:
     bool full_ = false;                               // there
     motion::Motion ridge_ = motion::Motion::Zero();   // of the last look: where its B curves down
     double reach_ = 0.0, longest_way_ = kLongestWay;  // of the held part's points
+    double sight_ = kReach;                           // within which contacts become rows [m]
     double allowed_ = 0.0;                            // overlap that the solve leaves [m]
     FixedList<Pose, kMostLooks + 1> way_;
 };

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/closed_form/thread_solid.h"
+
 namespace passung::closed_form {
 
 namespace {
@@ -276,6 +278,7 @@ double thicknessBetween(const Face& face, const Face& other) {
     constexpr double kOpposite = -0.999;
     const double none = std::numeric_limits<double>::infinity();
     if (face.kind == Face::Kind::Torus) return 2.0 * face.tube;
+    if (face.kind == Face::Kind::Helicoid) return 0.25 * face.pitch;  // of a ridge; at its crest's edges half of it
     if (!face.hollow && (face.kind == Face::Kind::Cylinder || face.kind == Face::Kind::Sphere))
         return 2.0 * face.radius;
     if (!other.isPlane()) return none;
@@ -284,12 +287,31 @@ double thicknessBetween(const Face& face, const Face& other) {
     return face.kind == Face::Kind::Cylinder && along ? -valueOf(other, face.origin) - face.radius : none;
 }
 
+/// Amid a groove the flanks are 0.216 pitches away, and a look goes an eighth of one.
+constexpr double kThreadSight = 0.17;
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+double widestOf(const Curve& spiral, double begin, double end) noexcept {
+    return std::max(std::abs(spiral.radius + spiral.widening * begin), std::abs(spiral.radius + spiral.widening * end));
+}
+
+/// No point of a line is farther from its frame's origin [m].
+double reachOf(const Curve& line) noexcept {
+    if (line.kind != Curve::Kind::Spiral) return line.centre.norm() + line.extent() + line.thickness;
+    const double highest = std::max(std::abs(line.centre.z() + line.climb * line.begin),
+                                    std::abs(line.centre.z() + line.climb * line.end));
+    return std::hypot(widestOf(line, line.begin, line.end), highest);
+}
+
 std::optional<SmoothSolid> solidFrom(const shape::Sheet&) { return std::nullopt; }
+SmoothSolid solidFrom(const shape::ThreadBolt& bolt) { return threadSolid(bolt); }
+SmoothSolid solidFrom(const shape::ThreadNut& nut) { return threadSolid(nut); }
 
 constexpr double kOnFace = 2e-8;  // of a conic in pieces [m]
 
 /// The faces of a lump that meet in an edge, where they are two, and those at which it ends, where three meet.
 void nameFaces(const Lump& lump, Curve& edge) {
+    if (edge.kind == Curve::Kind::Spiral) return;
     const auto isOn = [&](const Face& face, double share) {
         return std::abs(valueOf(face, pointOf(edge, share * edge.end))) < kOnFace;
     };
@@ -323,6 +345,10 @@ Vec3 pointOf(const Curve& curve, double t) noexcept {
             return curve.centre + std::cos(t) * curve.e1 + std::sin(t) * curve.e2;
         case Curve::Kind::Straight:
             return curve.centre + t * curve.e1;
+        case Curve::Kind::Spiral:
+            return curve.centre +
+                   (curve.radius + curve.widening * t) * (std::cos(t) * curve.e1 + std::sin(t) * curve.e2) +
+                   curve.climb * t * curve.e3;
         case Curve::Kind::Point:
             break;
     }
@@ -335,6 +361,11 @@ Vec3 slopeOf(const Curve& curve, double t) noexcept {
             return std::cos(t) * curve.e2 - std::sin(t) * curve.e1;
         case Curve::Kind::Straight:
             return curve.e1;
+        case Curve::Kind::Spiral: {
+            const double c = std::cos(t), s = std::sin(t);
+            return curve.widening * (c * curve.e1 + s * curve.e2) +
+                   (curve.radius + curve.widening * t) * (c * curve.e2 - s * curve.e1) + curve.climb * curve.e3;
+        }
         case Curve::Kind::Point:
             break;
     }
@@ -342,8 +373,30 @@ Vec3 slopeOf(const Curve& curve, double t) noexcept {
 }
 
 Vec3 bendOf(const Curve& curve, double t) noexcept {
+    if (curve.kind == Curve::Kind::Spiral) {
+        const double c = std::cos(t), s = std::sin(t);
+        return 2.0 * curve.widening * (c * curve.e2 - s * curve.e1) -
+               (curve.radius + curve.widening * t) * (c * curve.e1 + s * curve.e2);
+    }
     if (curve.kind != Curve::Kind::Circle) return Vec3::Zero();
     return -std::cos(t) * curve.e1 - std::sin(t) * curve.e2;
+}
+
+std::size_t piecesOf(const Curve& line) noexcept {
+    if (line.kind != Curve::Kind::Spiral) return 1;
+    return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil((line.end - line.begin) / kTurn)));
+}
+
+LinePiece pieceOf(const Curve& line, std::size_t i) noexcept {
+    if (line.kind != Curve::Kind::Spiral) return {-line.end, line.end, line.centre, line.extent(), line.extent()};
+    LinePiece piece;
+    piece.begin = line.begin + kTurn * static_cast<double>(i);
+    piece.end = i + 1 < piecesOf(line) ? line.begin + kTurn * static_cast<double>(i + 1) : line.end;
+    const double widest = widestOf(line, piece.begin, piece.end), half = 0.5 * (piece.end - piece.begin);
+    piece.middle = line.centre + 0.5 * (piece.begin + piece.end) * line.climb * line.e3;
+    piece.extent = std::hypot(widest, half * line.climb);
+    piece.speed = std::sqrt(widest * widest + line.widening * line.widening + line.climb * line.climb);
+    return piece;
 }
 
 double apartOn(const Curve& curve, double s, double t) noexcept {
@@ -366,8 +419,18 @@ double valueOf(const SmoothSolid& solid, const Vec3& p) noexcept {
 double reachOf(const SmoothSolid& solid) noexcept {
     double most = 0.0;
     for (const auto* lines : {&solid.edges, &solid.cores})
-        for (const Curve& line : *lines) most = std::max(most, line.centre.norm() + line.extent() + line.thickness);
+        for (const Curve& line : *lines) most = std::max(most, reachOf(line));
     return most;
+}
+
+bool isThread(const SmoothSolid& solid) noexcept { return std::isfinite(sightOf(solid)); }
+
+double sightOf(const SmoothSolid& solid) noexcept {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Lump& lump : solid.lumps)
+        for (const Face& face : lump.faces)
+            if (face.kind == Face::Kind::Helicoid) least = std::min(least, kThreadSight * face.pitch);
+    return least;
 }
 
 double thicknessOf(const SmoothSolid& solid) noexcept {

@@ -9,10 +9,12 @@
 
 namespace passung::closed_form {
 
-/// A line of a solid: a straight piece, a circle or an arc of one, or a point. P(t), t from -end to end, is
-/// centre + cos t e1 + sin t e2, t in radians, of a circle; centre + t e1 of a straight piece. Frame of the part.
+/// A line of a solid: a straight piece, a circle or an arc of one, a spiral, or a point. P(t), t from -end to end, is
+/// centre + cos t e1 + sin t e2, t in radians, of a circle; centre + t e1 of a straight piece; of a spiral, t from
+/// begin to end, centre + (radius + widening t) (cos t e1 + sin t e2) + climb t e3: on a cylinder, in a plane, on a
+/// cone. Frame of the part.
 struct Curve {
-    enum class Kind { Point, Straight, Circle };
+    enum class Kind { Point, Straight, Circle, Spiral };
 
     Kind kind = Kind::Point;
     Vec3 centre = Vec3::Zero();
@@ -21,11 +23,25 @@ struct Curve {
     double thickness = 0.0;                                   // of the material around it [m]; 0: an edge
     std::optional<std::array<Face, 2>> sides = std::nullopt;  // of an edge: the faces that meet there
     std::array<std::optional<Face>, 2> caps = {};             // and the one at which it ends, at -end and at end
+    // Of a spiral: [m], [m/rad], unit vectors.
+    double begin = 0.0, radius = 0.0, widening = 0.0, climb = 0.0;
+    Vec3 e3 = Vec3::Zero();
 
-    /// No point of it is farther from the centre [m].
+    /// No point of it is farther from the centre [m]; of no spiral.
     double extent() const noexcept { return kind == Kind::Point ? 0.0 : e1.norm(); }
     bool isClosed() const noexcept { return kind == Kind::Circle && end > 3.14159; }
 };
+
+/// A part of a line that is searched at once: all of it, or of a spiral at most a turn.
+struct LinePiece {
+    double begin = 0.0, end = 0.0;  // of t
+    Vec3 middle = Vec3::Zero();     // [m]
+    double extent = 0.0;            // no point of it is farther from the middle [m]
+    double speed = 0.0;             // |dP/dt| is no more [m]
+};
+std::size_t piecesOf(const Curve& line) noexcept;
+/// @pre i < piecesOf(line). rt-safe.
+LinePiece pieceOf(const Curve& line, std::size_t i) noexcept;
 
 inline constexpr std::size_t kMostFaces = 16;  // of a lump
 
@@ -35,8 +51,9 @@ struct Lump {
 };
 
 /// The union of its lumps, with its lines. Edges: where two faces of a lump meet; every convex edge of the part is one,
-/// further ones run through material. Cores: the points, lines and circles about which a sphere's, a cylinder's and a
-/// torus' face lie, which touch where no edge is.
+/// further ones run through material. A thread's ridges are two lumps, one above their middles with the upper flank,
+/// one below. Cores: the points, lines and circles about which a sphere's, a cylinder's and a torus' face lie, which
+/// touch where no edge is.
 struct SmoothSolid {
     std::vector<Lump> lumps;
     std::vector<Curve> edges;
@@ -50,6 +67,13 @@ std::optional<SmoothSolid> solidOf(const shape::Shape& shape);
 Vec3 pointOf(const Curve& curve, double t) noexcept;
 Vec3 slopeOf(const Curve& curve, double t) noexcept;  // dP/dt
 Vec3 bendOf(const Curve& curve, double t) noexcept;   // d²P/dt²
+
+/// Rows of contacts farther away than this are not needed, because a look goes less far, and would be those of a
+/// thread's other flank [m]; infinite if it has no thread.
+double sightOf(const SmoothSolid& solid) noexcept;
+
+/// It has a thread's flank.
+bool isThread(const SmoothSolid& solid) noexcept;
 
 /// How far two places of the line are apart, by t; round a whole circle the shorter way.
 double apartOn(const Curve& curve, double s, double t) noexcept;

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/closed_form/circle_samples.h"
+#include "core/closed_form/touch_minimum.h"
 
 namespace passung::closed_form {
 
@@ -16,14 +17,8 @@ namespace {
 constexpr int kCircleSamples = CircleSamples::kPieces;
 constexpr int kStraightSamples = 12;  // pieces
 constexpr int kRingSamples = 96;      // of a circle against a face that is not simple on it: minima may lie close
-constexpr int kSteps = 60;            // to close a bracket
-constexpr double kClosed = 1e-10;     // of a line's parameter
 constexpr double kOnFace = 1e-9;      // [m]
 constexpr double kFlat = 0.02;        // of a line on a face [rad]
-
-std::uint8_t placeOf(const Lump& lump, const Face& face) noexcept {
-    return static_cast<std::uint8_t>(&face - lump.faces.data());
-}
 
 /// The faces of a lump that can be the largest somewhere along a line.
 class Highest {
@@ -73,132 +68,76 @@ double slopeOn(const Face& face, const Curve& line, double t) noexcept {
     return gradientOf(face, line.centre + c * line.e1 + s * line.e2).dot(c * line.e2 - s * line.e1);
 }
 
-/// A place on the line, with the highest face there.
-struct Sample {
-    double t = 0.0, value = 0.0, slope = 0.0;
-    const Face* face = nullptr;
-    Vec3 p;
+/// A lump's function along a line.
+class Walk {
+public:
+    static constexpr double kEnough = kClosed;
+
+    struct Point {
+        double t = 0.0;
+        Vec3 p;
+    };
+
+    Walk(const Curve& line, const Lump& lump) noexcept : line_(line), lump_(lump), highest_(line, lump) {}
+
+    const Curve& line() const noexcept { return line_; }
+    const Lump& lump() const noexcept { return lump_; }
+    const Highest& faces() const noexcept { return highest_; }
+
+    Point at(double t) const noexcept { return {t, pointOf(line_, t)}; }
+    double value(const Face& face, const Point& at) const noexcept { return valueOf(face, at.p); }
+    double slope(const Face& face, const Point& at) const noexcept { return slopeOn(face, line_, at.t); }
+    const Face* highest(const Point& at, double& value) const noexcept { return highest_.at(at.p, value); }
+
+private:
+    const Curve& line_;
+    const Lump& lump_;
+    Highest highest_;
 };
 
-Sample sampleAt(const Curve& line, const Highest& highest, double t) noexcept {
-    Sample sample;
-    sample.t = t;
-    sample.p = pointOf(line, t);
-    sample.face = highest.at(sample.p, sample.value);
-    sample.slope = slopeOn(*sample.face, line, t);
-    return sample;
-}
-
+using Sample = SampleOn<Walk>;
 using EdgeSamples = std::array<Sample, kCircleSamples + 1>;
 
 /// Those of a whole circle, as far as possible at once.
-void sampleCircle(const Curve& circle, const Highest& highest, double begin, double piece,
-                  EdgeSamples& samples) noexcept {
+void sampleCircle(const Walk& walk, double begin, double piece, EdgeSamples& samples) noexcept {
+    const Highest& highest = walk.faces();
     CircleSamples all;
-    const bool told = all.take(circle, highest.faces());
+    const bool told = all.take(walk.line(), highest.faces());
     for (std::size_t i = 0; i < samples.size(); ++i) {
         Sample& sample = samples[i];
-        sample.t = begin + piece * static_cast<double>(i);
-        sample.p = all.point(i);
+        sample.at.t = begin + piece * static_cast<double>(i);
+        sample.at.p = all.point(i);
         if (told) {
             sample.value = all.value[i];
             sample.slope = all.slope[i];
             sample.face = highest.faces()[static_cast<std::size_t>(all.face[i])];
         } else {
-            sample.face = highest.at(sample.p, sample.value);
-            sample.slope = gradientOf(*sample.face, sample.p).dot(all.way(i));
+            sample.face = highest.at(sample.at.p, sample.value);
+            sample.slope = gradientOf(*sample.face, sample.at.p).dot(all.way(i));
         }
     }
 }
 
-void sampleEdge(const Curve& edge, const Highest& highest, double begin, double piece, int pieces,
-                EdgeSamples& samples) noexcept {
-    if (edge.isClosed()) return sampleCircle(edge, highest, begin, piece, samples);
-    for (int i = 0; i <= pieces; ++i) samples[static_cast<std::size_t>(i)] = sampleAt(edge, highest, begin + piece * i);
-}
-
-/// The zero of a function between two places where its sign differs, by false position after Illinois.
-template <class Function>
-double zeroBetween(double low, double high, double at_low, double at_high, Function function) noexcept {
-    int side = 0;
-    for (int i = 0; i < kSteps && high - low > kClosed; ++i) {
-        double t = at_high == at_low ? 0.5 * (low + high) : (low * at_high - high * at_low) / (at_high - at_low);
-        if (!(t > low && t < high)) t = 0.5 * (low + high);
-        const double value = function(t);
-        if (std::abs(value) < 1e-18) return t;
-        if ((value > 0.0) == (at_high > 0.0)) {
-            if (side == 1) at_low *= 0.5;
-            high = t;
-            at_high = value;
-            side = 1;
-        } else {
-            if (side == -1) at_high *= 0.5;
-            low = t;
-            at_low = value;
-            side = -1;
-        }
-    }
-    return 0.5 * (low + high);
-}
-
-/// The minimum between two samples of which the first falls and the second rises.
-Touch minimumBetween(const Curve& line, const Lump& lump, const Highest& highest, Sample low, Sample high) noexcept {
-    Sample here = low;
-    for (int i = 0; i < kSteps; ++i) {
-        const bool one_face = low.face == high.face;
-        const double t = one_face ? zeroBetween(low.t, high.t, low.slope, high.slope,
-                                                [&](double at) { return slopeOn(*low.face, line, at); })
-                                  : zeroBetween(low.t, high.t, valueOf(*high.face, low.p) - low.value,
-                                                high.value - valueOf(*low.face, high.p), [&](double at) {
-                                                    const Vec3 p = pointOf(line, at);
-                                                    return valueOf(*high.face, p) - valueOf(*low.face, p);
-                                                });
-        here = sampleAt(line, highest, t);
-        const double of_low = valueOf(*low.face, here.p);
-        if (here.value > of_low + 1e-15 && here.face != low.face && here.face != high.face) {
-            (here.slope < 0.0 ? low : high) = here;  // a third face
-            continue;
-        }
-        if (one_face) return {.kind = Touch::Kind::Smooth, .t = t, .gap = of_low, .a = placeOf(lump, *low.face)};
-        const double falls = slopeOn(*low.face, line, t), rises = slopeOn(*high.face, line, t);
-        if (falls <= 0.0 && rises >= 0.0) {
-            if (rises - falls <= 0.0)
-                return {.kind = Touch::Kind::Smooth, .t = t, .gap = of_low, .a = placeOf(lump, *low.face)};
-            return {.kind = Touch::Kind::Kink,
-                    .t = t,
-                    .gap = of_low,
-                    .a = placeOf(lump, *low.face),
-                    .b = placeOf(lump, *high.face),
-                    .share = rises / (rises - falls)};
-        }
-        if (falls > 0.0)
-            high = {t, of_low, falls, low.face, here.p};
-        else
-            low = {t, of_low, rises, high.face, here.p};
-    }
-    return {.kind = Touch::Kind::Fixed, .t = here.t, .gap = here.value, .a = placeOf(lump, *here.face)};
+void sampleEdge(const Walk& walk, double begin, double piece, int pieces, EdgeSamples& samples) noexcept {
+    if (walk.line().isClosed()) return sampleCircle(walk, begin, piece, samples);
+    for (int i = 0; i <= pieces; ++i) samples[static_cast<std::size_t>(i)] = sampleAt(walk, begin + piece * i);
 }
 
 /// Between two samples that both fall or both rise: a kink from the one's face, which turned on the way, to the
 /// other's.
-std::optional<Touch> kinkBetween(const Curve& line, const Lump& lump, const Sample& low, const Sample& high) noexcept {
+std::optional<Touch> kinkBetween(const Walk& walk, const Sample& low, const Sample& high) noexcept {
     if (low.face == high.face || (low.slope < 0.0) != (high.slope < 0.0)) return std::nullopt;
-    const bool turned =
-        low.slope < 0.0 ? slopeOn(*high.face, line, low.t) > 0.0 : slopeOn(*low.face, line, high.t) < 0.0;
+    const bool turned = low.slope < 0.0 ? walk.slope(*high.face, low.at) > 0.0 : walk.slope(*low.face, high.at) < 0.0;
     if (!turned) return std::nullopt;
-    const double t = zeroBetween(low.t, high.t, valueOf(*high.face, low.p) - low.value,
-                                 high.value - valueOf(*low.face, high.p), [&](double at) {
-                                     const Vec3 p = pointOf(line, at);
-                                     return valueOf(*high.face, p) - valueOf(*low.face, p);
-                                 });
-    const double falls = slopeOn(*low.face, line, t), rises = slopeOn(*high.face, line, t);
-    const double gap = valueOf(*low.face, pointOf(line, t));
-    if (!(falls < 0.0 && rises > 0.0) || valueOf(lump, pointOf(line, t)) > gap + 1e-15) return std::nullopt;
+    const Walk::Point at = walk.at(crossingBetween(walk, low, high));
+    const double falls = walk.slope(*low.face, at), rises = walk.slope(*high.face, at);
+    const double gap = walk.value(*low.face, at);
+    if (!(falls < 0.0 && rises > 0.0) || valueOf(walk.lump(), at.p) > gap + 1e-15) return std::nullopt;
     return Touch{.kind = Touch::Kind::Kink,
-                 .t = t,
+                 .t = at.t,
                  .gap = gap,
-                 .a = placeOf(lump, *low.face),
-                 .b = placeOf(lump, *high.face),
+                 .a = placeOf(walk.lump(), *low.face),
+                 .b = placeOf(walk.lump(), *high.face),
                  .share = rises / (rises - falls)};
 }
 
@@ -209,21 +148,21 @@ bool isThere(const Touches& touches, const Curve& line, double t) noexcept {
 }
 
 /// Where a line that lies on a face leaves it, whether or not that is a minimum: it tilts about either end.
-void addEnd(const Curve& line, const Lump& lump, const Face& face, double t, double reach, Touches& touches) noexcept {
-    const double gap = valueOf(face, pointOf(line, t));
-    if (gap > reach || isThere(touches, line, t)) return;
-    touches.add({.kind = Touch::Kind::Fixed, .t = t, .gap = gap, .a = placeOf(lump, face)});
+void addEnd(const Walk& walk, const Face& face, double t, double reach, Touches& touches) noexcept {
+    const double gap = valueOf(face, pointOf(walk.line(), t));
+    if (gap > reach || isThere(touches, walk.line(), t)) return;
+    touches.add({.kind = Touch::Kind::Fixed, .t = t, .gap = gap, .a = placeOf(walk.lump(), face)});
 }
 
 bool liesOn(const Curve& line, double slope) noexcept { return std::abs(slope) < kFlat * line.extent(); }
 
 /// Of a straight line through `at`, where a plane is the highest face.
-void addEndsOnPlane(const Curve& edge, const Lump& lump, const Highest& highest, const Face& face, double at,
-                    double reach, Touches& touches) noexcept {
+void addEndsOnPlane(const Walk& walk, const Face& face, double at, double reach, Touches& touches) noexcept {
+    const Curve& edge = walk.line();
     const double slope = slopeOn(face, edge, at), value = valueOf(face, pointOf(edge, at));
     if (!face.isPlane() || !liesOn(edge, slope)) return;
     double low = -edge.end, high = edge.end;
-    for (const Face* other : highest.faces()) {
+    for (const Face* other : walk.faces().faces()) {
         if (other == &face || !other->isPlane()) continue;
         const double relative = slopeOn(*other, edge, at) - slope;
         const double short_of = value - valueOf(*other, pointOf(edge, at));
@@ -231,41 +170,29 @@ void addEndsOnPlane(const Curve& edge, const Lump& lump, const Highest& highest,
         if (relative < 0.0) low = std::max(low, at + short_of / relative);
     }
     for (const double t : {low, high})
-        if (low <= high && std::abs(t) < edge.end) addEnd(edge, lump, face, t, reach, touches);
-}
-
-bool isBeside(const Touches& touches, const Curve& line, double t) noexcept {
-    for (const Touch& touch : touches.all()) {
-        if (apartOn(line, touch.t, t) < (touch.kind == Touch::Kind::Kink ? kBesideKink : kSameTouch)) return true;
-    }
-    return false;
-}
-
-void addFixed(const Curve& edge, const Lump& lump, const Sample& at, double reach, Touches& touches) noexcept {
-    if (at.value > reach || isBeside(touches, edge, at.t)) return;
-    touches.add({.kind = Touch::Kind::Fixed, .t = at.t, .gap = at.value, .a = placeOf(lump, *at.face)});
+        if (low <= high && std::abs(t) < edge.end) addEnd(walk, face, t, reach, touches);
 }
 
 /// A straight edge and a function that has one minimum on it.
-double searchConvex(const Curve& edge, const Lump& lump, const Highest& highest, double reach,
-                    Touches& touches) noexcept {
-    const Sample low = sampleAt(edge, highest, -edge.end), high = sampleAt(edge, highest, edge.end);
+double searchConvex(const Walk& walk, double reach, Touches& touches) noexcept {
+    const double end = walk.line().end;
+    const Lump& lump = walk.lump();
+    const Sample low = sampleAt(walk, -end), high = sampleAt(walk, end);
     double least = std::min(low.value, high.value);
     if (low.slope < 0.0 && high.slope > 0.0) {
-        const Touch touch = minimumBetween(edge, lump, highest, low, high);
+        const Touch touch = minimumBetween(walk, low, high);
         least = touch.gap;
         if (touch.gap <= reach) {
             touches.add(touch);
-            addEndsOnPlane(edge, lump, highest, lump.faces[touch.a], touch.t, reach, touches);
-            if (touch.b != Touch::kNone)
-                addEndsOnPlane(edge, lump, highest, lump.faces[touch.b], touch.t, reach, touches);
+            addEndsOnPlane(walk, lump.faces[touch.a], touch.t, reach, touches);
+            if (touch.b != Touch::kNone) addEndsOnPlane(walk, lump.faces[touch.b], touch.t, reach, touches);
         }
     } else {
         const Sample& lower = low.value < high.value ? low : high;
-        addEndsOnPlane(edge, lump, highest, *lower.face, lower.t, reach, touches);
+        addEndsOnPlane(walk, *lower.face, lower.at.t, reach, touches);
     }
-    addFixed(edge, lump, low, reach, touches);
-    addFixed(edge, lump, high, reach, touches);
+    addFixed(walk, low, reach, touches);
+    addFixed(walk, high, reach, touches);
     return least;
 }
 
@@ -289,13 +216,14 @@ void addCore(const Curve& core, const Face& face, const Lump& lump, double t, do
 /// than `way` apart: eᵀ K e + g · bend, with K at most 1 / r across the axis, and below 0 of what is hollow.
 double mostBend(const Face& face, const Curve& line, const Sample& low, const Sample& high, double way) noexcept {
     const double turn = line.kind == Curve::Kind::Circle ? line.extent() : 0.0;
+    if (face.kind == Face::Kind::Torus || face.kind == Face::Kind::Helicoid)
+        return std::numeric_limits<double>::infinity();
     if (face.isPlane() || face.hollow) return turn;
-    if (face.kind == Face::Kind::Torus) return std::numeric_limits<double>::infinity();
     const auto fromAxis = [&](const Vec3& p) {
         const Vec3 d = p - face.origin;
         return face.kind == Face::Kind::Sphere ? d.norm() : (d - d.dot(face.axis) * face.axis).norm();
     };
-    const double r = std::min(fromAxis(low.p), fromAxis(high.p)) - 0.5 * way;
+    const double r = std::min(fromAxis(low.at.p), fromAxis(high.at.p)) - 0.5 * way;
     return r > 0.0 ? turn + line.extent() * line.extent() / r : std::numeric_limits<double>::infinity();
 }
 
@@ -311,8 +239,8 @@ double closerBound(const Curve& line, const Sample& low, const Sample& high, dou
     if (low.face == high.face) {
         take(*low.face, low.value, high.value);
     } else {
-        take(*low.face, low.value, valueOf(*low.face, high.p));
-        take(*high.face, valueOf(*high.face, low.p), high.value);
+        take(*low.face, low.value, valueOf(*low.face, high.at.p));
+        take(*high.face, valueOf(*high.face, low.at.p), high.value);
     }
     return bound;
 }
@@ -326,15 +254,15 @@ bool canTouch(const Curve& core, const Face& face) noexcept {
 }  // namespace
 
 double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& touches, double* closer) noexcept {
-    const Highest highest(edge, lump);
+    const Walk walk(edge, lump);
+    const Highest& highest = walk.faces();
     if (highest.least() > reach) return highest.least();
-    if (edge.kind == Curve::Kind::Straight && highest.isConvex())
-        return searchConvex(edge, lump, highest, reach, touches);
+    if (edge.kind == Curve::Kind::Straight && highest.isConvex()) return searchConvex(walk, reach, touches);
     const bool closed = edge.isClosed();
     const int pieces = edge.kind == Curve::Kind::Circle ? kCircleSamples : kStraightSamples;
     const double begin = -edge.end, piece = 2.0 * edge.end / pieces;
     EdgeSamples samples;
-    sampleEdge(edge, highest, begin, piece, pieces, samples);
+    sampleEdge(walk, begin, piece, pieces, samples);
     const double farthest = edge.extent() * piece;
     double least = samples[0].value;
     for (int i = 0; i < pieces; ++i) {
@@ -346,16 +274,14 @@ double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& to
         if (low.face != high.face && (liesOn(edge, low.slope) || liesOn(edge, high.slope))) {
             const Face& flat = liesOn(edge, low.slope) ? *low.face : *high.face;
             const Face& other = &flat == low.face ? *high.face : *low.face;
-            const auto ahead = [&](const Vec3& p) { return valueOf(*high.face, p) - valueOf(*low.face, p); };
-            const double t = zeroBetween(low.t, high.t, ahead(low.p), ahead(high.p),
-                                         [&](double at) { return ahead(pointOf(edge, at)); });
-            if (slopeOn(flat, edge, t) * slopeOn(other, edge, t) > 0.0) addEnd(edge, lump, flat, t, reach, touches);
+            const double t = crossingBetween(walk, low, high);
+            if (slopeOn(flat, edge, t) * slopeOn(other, edge, t) > 0.0) addEnd(walk, flat, t, reach, touches);
         }
         if (!(low.slope < 0.0 && high.slope >= 0.0)) {
-            if (const auto kink = kinkBetween(edge, lump, low, high); kink && kink->gap <= reach) touches.add(*kink);
+            if (const auto kink = kinkBetween(walk, low, high); kink && kink->gap <= reach) touches.add(*kink);
             continue;
         }
-        const Touch touch = minimumBetween(edge, lump, highest, low, high);
+        const Touch touch = minimumBetween(walk, low, high);
         if (touch.gap <= reach) touches.add(touch);
     }
     if (closer != nullptr) {
@@ -365,7 +291,7 @@ double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& to
     }
     const int fan = edge.kind == Curve::Kind::Circle ? kCircleSamples / 8 : kStraightSamples;
     for (int i = 0; i < pieces + (closed ? 0 : 1); i += fan)
-        addFixed(edge, lump, samples[static_cast<std::size_t>(i)], reach, touches);
+        addFixed(walk, samples[static_cast<std::size_t>(i)], reach, touches);
     return least;
 }
 

@@ -68,6 +68,8 @@ Piece pieceAround(const Convex&, const Vec3&, double) {
     return Piece::Whole;
 }
 Piece pieceAround(const shape::Torus&, const Vec3&, double) { return Piece::None; }
+Piece pieceAround(const shape::ThreadBolt&, const Vec3&, double) { return Piece::None; }
+Piece pieceAround(const shape::ThreadNut&, const Vec3&, double) { return Piece::None; }
 Piece pieceAround(const shape::KeyedPeg&, const Vec3&, double) { return Piece::None; }
 Piece pieceAround(const shape::BorePlate& s, const Vec3& m, double r) { return pieceOf(s, m, r, true); }
 Piece pieceAround(const shape::SquareBorePlate& s, const Vec3& m, double r) { return pieceOf(s, m, r, true); }

@@ -12,6 +12,19 @@ bool hasClosedForm(const PartSpec& part) {
     return shape != nullptr && !std::holds_alternative<shape::Sheet>(*shape);
 }
 
+bool isThread(const PartSpec& part) {
+    const auto* shape = std::get_if<shape::Shape>(&part.geometry);
+    return shape != nullptr &&
+           (std::holds_alternative<shape::ThreadBolt>(*shape) || std::holds_alternative<shape::ThreadNut>(*shape));
+}
+
+/// Only of a bolt with a nut are edges all that can touch: round parts would meet their crests between edges.
+bool isThreadAlone(const PartSpec& a, const PartSpec& b) {
+    if (!isThread(a) && !isThread(b)) return false;
+    return !isThread(a) || !isThread(b) ||
+           std::get<shape::Shape>(a.geometry).index() == std::get<shape::Shape>(b.geometry).index();
+}
+
 bool rub(const PartSpec& a, const PartSpec& b) { return a.friction > 0.0 && b.friction > 0.0; }
 
 /// Why the pair has no closed form; nothing if it has one.
@@ -20,6 +33,7 @@ const char* closedFormProblem(const PartSpec& held, const PartSpec& obstacle, co
         return "closed_form needs a god object: the penalty is a sum over sample points";
     if (!hasClosedForm(held) || !hasClosedForm(obstacle))
         return "closed_form needs parts that are parametric shapes, without a mesh or sheet";
+    if (isThreadAlone(held, obstacle)) return "closed_form needs a thread_bolt with a thread_nut, or no thread";
     if (rub(held, obstacle)) return "closed_form needs parts without friction";
     return nullptr;
 }
@@ -45,7 +59,7 @@ GeometryChoice geometryOfPair(const PartSpec& held, const PartSpec& obstacle, co
     if (closedFormProblem(held, obstacle, contact) == nullptr)
         return {Geometry::ClosedForm, "a god object, and parts that are parametric shapes"};
     if (const char* problem = surfaceProblem(held, obstacle, contact)) return {Geometry::Field, problem};
-    return {Geometry::Surface, "a god object, and a part that is a mesh or sheet"};
+    return {Geometry::Surface, "a god object, and a part that is a mesh, a sheet or a thread without its counterpart"};
 }
 
 GeometryChoice geometryOf(const SceneSpec& scene) {
@@ -64,6 +78,11 @@ GeometryChoice geometryOf(const SceneSpec& scene) {
 std::optional<std::string> geometryProblem(const SceneSpec& scene) {
     const PartSpec* held = heldPart(scene);
     const Geometry asked = scene.contact.geometry;
+    const auto thread = std::find_if(scene.parts.begin(), scene.parts.end(), isThread);
+    if (thread != scene.parts.end() && scene.parts.size() > 1 && geometryOf(scene).geometry == Geometry::Field)
+        return "must not be distance fields with a thread, whose field would take minutes: needs a god object without "
+               "friction and proxy_filter_hz (" +
+               thread->name + ")";
     if ((asked != Geometry::ClosedForm && asked != Geometry::Surface) || held == nullptr) return std::nullopt;
     for (const PartSpec& part : scene.parts) {
         if (part.held) continue;

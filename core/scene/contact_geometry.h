@@ -15,14 +15,14 @@ struct GeometryChoice {
 };
 
 /// Of the held part with one obstacle. Auto: fields for the penalty; for god objects the closed form where both parts
-/// have one and nothing rubs, else the surfaces, and fields where those cannot do it: friction, a proxy with a
-/// low-pass.
+/// have one (of threads a bolt with a nut) and nothing rubs, else the surfaces, and fields where those cannot do it:
+/// friction, a proxy with a low-pass.
 GeometryChoice geometryOfPair(const PartSpec& held, const PartSpec& obstacle, const ContactSpec& contact);
 
 /// Of a scene, whose pairs all have one: that which each of them can have.
 GeometryChoice geometryOf(const SceneSpec& scene);
 
-/// What has to hold for the geometry that the scene names, as a requirement; nothing if it does.
+/// What has to hold for the geometry that the scene names or gets, as a requirement; nothing if it does.
 std::optional<std::string> geometryProblem(const SceneSpec& scene);
 
 /// "penalty", "god_object_heuristic", "god_object".

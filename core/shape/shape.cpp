@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "core/shape/thread.h"
+
 namespace passung::shape {
 
 namespace {
@@ -94,6 +96,15 @@ Dimensions dimensionsOf(const KeyedBorePlate& p) {
             {"key_width", p.key_width},   {"key_height", p.key_height},
             {"bore_depth", p.bore_depth}, {"chamfer", p.chamfer}};
 }
+Dimensions dimensionsOf(const ThreadBolt& b) {
+    return {{"diameter", b.diameter}, {"pitch", b.pitch}, {"length", b.length}, {"chamfer", b.chamfer}};
+}
+Dimensions dimensionsOf(const ThreadNut& n) {
+    return {
+        {"diameter", n.diameter}, {"pitch", n.pitch}, {"width", n.width}, {"height", n.height}, {"chamfer", n.chamfer}};
+}
+
+constexpr double kMostTurns = 100.0, kMostTurnsOfNut = 12.0;  // all of a nut's turns touch at once
 
 constexpr const char* kMouthInside = "the widened mouth must lie inside the plate's top face";
 
@@ -152,6 +163,27 @@ void checkTogether(const KeyedBorePlate& p, Check& check) {
         check.less("chamfer", p.chamfer, std::min(beside_key - p.key_height, 0.5 * p.depth - bore), kMouthInside);
 }
 
+/// Of a thread that is `length` long.
+bool checkThread(double diameter, double pitch, double length, const char* key, double most_turns, Check& check) {
+    if (!(pitch <= 0.25 * diameter)) check.add("pitch", pitch, "must be at most a quarter of the diameter");
+    if (!(length >= pitch && length <= most_turns * pitch))
+        check.add(key, length, "must be 1 to " + std::to_string(static_cast<int>(most_turns)) + " pitches");
+    return check.empty();
+}
+
+void checkTogether(const ThreadBolt& b, Check& check) {
+    checkThread(b.diameter, b.pitch, b.length, "length", kMostTurns, check) &&
+        check.less("chamfer", b.chamfer, std::min(0.5 * b.diameter, b.length),
+                   "must be less than half the diameter and less than the length");
+}
+
+void checkTogether(const ThreadNut& n, Check& check) {
+    checkThread(n.diameter, n.pitch, n.height, "height", kMostTurnsOfNut, check) &&
+        check.less("diameter", n.diameter, n.width, "must be less than the width across flats") &&
+        check.less("chamfer", n.chamfer, std::min(0.5 * n.width - threadOf(n).inner, 0.5 * n.height),
+                   "the widened mouths must lie inside the nut's faces, each within half its height");
+}
+
 }  // namespace
 
 const char* kindName(const Shape& shape) {
@@ -162,7 +194,8 @@ const char* kindName(const Shape& shape) {
                    [](const SquarePeg&) { return "square_peg"; }, [](const KeyedPeg&) { return "keyed_peg"; },
                    [](const BorePlate&) { return "bore_plate"; },
                    [](const SquareBorePlate&) { return "square_bore_plate"; },
-                   [](const KeyedBorePlate&) { return "keyed_bore_plate"; }},
+                   [](const KeyedBorePlate&) { return "keyed_bore_plate"; },
+                   [](const ThreadBolt&) { return "thread_bolt"; }, [](const ThreadNut&) { return "thread_nut"; }},
         shape);
 }
 

@@ -11,8 +11,9 @@
 namespace passung::shape {
 
 /// Parametric shapes, lengths in metres. The closed form of each is the truth for what is built from it.
-/// Frames: pegs: origin on the tip face at the centre of its circle or rectangle, body along +z; plates with a bore or
-/// pocket: origin at the centre of its mouth on the top face z = 0, body below; the others: origin at the centre.
+/// Frames: pegs and bolts: origin on the tip face at the centre of its circle or rectangle, body along +z; plates with
+/// a bore or pocket and nuts: origin at the centre of its mouth on the top face z = 0, body below; the others: origin
+/// at the centre.
 struct Sphere {
     double diameter;
 };
@@ -63,9 +64,24 @@ struct KeyedBorePlate {
     double bore_depth;             // = height or more: through
     double chamfer;                // 45° at the mouth, of the bore and of the keyway
 };
+/// A bar with a thread along its whole length: see thread.h. In the plane y = 0, x > 0 a ridge's middle is at z = 0.
+struct ThreadBolt {
+    double diameter;  // over the crests
+    double pitch, length;
+    double chamfer;  // 45° at the tip; 0 = sharp
+};
+/// A hexagonal block with a threaded hole right through, along z: see thread.h. Two flats are normal to x. In the plane
+/// y = 0, x > 0 a groove's middle is at z = 0, so that a bolt fits in it at the same pose.
+struct ThreadNut {
+    double diameter;  // over the roots
+    double pitch;
+    double width;    // across flats
+    double height;   // along z
+    double chamfer;  // 45° at both mouths, from the crests on; 0 = sharp
+};
 
 using Shape = std::variant<Sphere, Box, Cylinder, Torus, Sheet, Peg, SquarePeg, KeyedPeg, BorePlate, SquareBorePlate,
-                           KeyedBorePlate>;
+                           KeyedBorePlate, ThreadBolt, ThreadNut>;
 
 /// The kind's name in scene files ("bore_plate").
 const char* kindName(const Shape& shape);

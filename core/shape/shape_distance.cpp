@@ -3,6 +3,7 @@
 
 #include "core/shape/profile.h"
 #include "core/shape/shape.h"
+#include "core/shape/thread_surface.h"
 
 namespace passung::shape {
 

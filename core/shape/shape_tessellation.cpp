@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "core/geometry/triangle_builder.h"
+#include "core/shape/circle_steps.h"
 #include "core/shape/profile.h"
 #include "core/shape/shape.h"
+#include "core/shape/thread_surface.h"
 
 namespace passung::shape {
 
@@ -15,25 +17,6 @@ namespace {
 using std::numbers::pi;
 using Index = geometry::TriangleBuilder::Index;
 using PointRing = geometry::TriangleBuilder::Ring;
-
-constexpr int kFewestSegments = 12;
-constexpr int kMostSegments = 2048;        // then the chord error is 1.2e-6 of the radius
-constexpr double kVertexRounding = 1e-15;  // of a vertex on a round face, per radius
-
-/// Segments of a circle so that the sagitta r(1 - cos(π/n)) stays within `chord_error`; divisible by 4, so that the
-/// extreme points on the axes are vertices.
-int segmentsFor(double radius, double chord_error) {
-    const double cosine = std::clamp(1.0 - chord_error / radius, 0.0, 1.0);
-    const double half_angle = std::acos(cosine);
-    const double wanted = half_angle > 0.0 ? pi / half_angle : kMostSegments;
-    const int segments = static_cast<int>(std::ceil(std::min<double>(wanted, kMostSegments)));
-    return std::clamp((segments + 3) / 4 * 4, kFewestSegments, kMostSegments);
-}
-
-/// Sagitta of a circle of segmentsFor(radius, asked) segments.
-double sagittaFor(double radius, double asked) {
-    return radius * (1.0 - std::cos(pi / segmentsFor(radius, asked)) + kVertexRounding);
-}
 
 /// Largest distance between the sphere of radius 1 and a triangle with corners on it: at its circumcentre, or nearer.
 double sphereError(const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -12,6 +12,7 @@
 
 #include "core/geometry/mesh_edges.h"
 #include "core/geometry/parallel.h"
+#include "core/shape/thread.h"
 
 namespace passung::shape {
 namespace {
@@ -334,6 +335,14 @@ struct ThicknessesOf {
     List operator()(const BorePlate& s) const { return plate(s, s.bore_diameter, s.bore_diameter, 0.0); }
     List operator()(const SquareBorePlate& s) const { return plate(s, s.pocket_width, s.pocket_depth, 0.0); }
     List operator()(const KeyedBorePlate& s) const { return plate(s, s.bore_diameter, s.bore_diameter, s.key_height); }
+    List operator()(const ThreadBolt& s) const {
+        return {rod(2.0 * threadOf(s).inner, s.length), {0.5 * s.pitch, FeatureKind::Wall, true}};
+    }
+    List operator()(const ThreadNut& s) const {
+        return {{0.5 * (s.width - s.diameter), FeatureKind::Wall, true},
+                {s.height, FeatureKind::Wall, true},
+                {0.5 * s.pitch, FeatureKind::Wall, true}};
+    }
 
     /// What is left of a plate around and under its hole.
     template <class Plate>

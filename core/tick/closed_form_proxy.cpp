@@ -31,7 +31,8 @@ void note(const closed_form::ConstrainedPose& found, Report& report) noexcept {
     report.iterations += static_cast<std::uint32_t>(found.iterations);
 }
 
-int mostLooks(const TickModel& model) noexcept {
+int mostLooks(const TickModel& model, const ClosedFormMemory& memory) noexcept {
+    if (memory.has_thread) return closed_form::kThreadLooks;
     return model.contact.method == scene::ContactMethod::GodObject ? closed_form::kMostLooks : kHeuristicLooks;
 }
 
@@ -49,6 +50,7 @@ ClosedFormMemory closedFormMemory(const TickModel& model) {
     const auto pairs = pairsOf(model);
     memory.solver = closed_form::PoseSolver(pairs);
     for (const closed_form::SolidPair& pair : pairs) memory.at_hand.emplace_back(pair);
+    memory.has_thread = std::any_of(model.solids.begin(), model.solids.end(), closed_form::isThread);
     return memory;
 }
 
@@ -58,7 +60,8 @@ void followInClosedForm(const TickModel& model, const HandSample& hand, Proxy& p
         proxy.X_WG = hand.X_WH;
         held.hold = {};
     }
-    const closed_form::ConstrainedPose found = memory.solver.solve(proxy.X_WG, hand.X_WH, held.hold, mostLooks(model));
+    const closed_form::ConstrainedPose found =
+        memory.solver.solve(proxy.X_WG, hand.X_WH, held.hold, mostLooks(model, memory));
     proxy.X_WG = found.X_WG;
     proxy.clearance = -found.overlap;
     note(found, report);
@@ -72,7 +75,7 @@ void filterInClosedForm(const TickModel& model, const HandSample& hand, const Cl
     if (held.hold.count > 0 && filter.has_last_proxy) {
         const motion::Motion u = unconstrainedMotion(model, filter.X_WG_last, proxy.X_WG);
         const closed_form::ConstrainedPose found = memory.solver.solve(
-            filter.X_WG_last, moved(model, filter.X_WG_last, alpha * u), filter.hold, mostLooks(model));
+            filter.X_WG_last, moved(model, filter.X_WG_last, alpha * u), filter.hold, mostLooks(model, memory));
         proxy.X_WG = found.X_WG;
         proxy.clearance = -found.overlap;
         note(found, report);

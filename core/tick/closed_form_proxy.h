@@ -19,6 +19,7 @@ namespace passung::tick {
 ///   god_object            sweep: kMostLooks looks, each under all contacts within reach.
 ///   god_object_heuristic  #1 contacts at the last proxy; #2 relief of overlap, the deepest first, by kRepair a tick;
 ///                         #3 the way to the hand; #4 the motion that the contacts leave of it: kHeuristicLooks looks.
+///   Either with threads: kThreadLooks.
 /// Where the looks end before the proxy has come to rest it stays at the last pose without overlap, and goes on in the
 /// next tick (kIterationLimit).
 /// Limit cases: nothing within reach → G = H. A plane → G is H's projection onto it. A start in overlap: as there.
@@ -43,6 +44,7 @@ struct ClosedFormMemory {
     closed_form::PoseSolver solver{{}};
     std::vector<closed_form::ContactSearch> at_hand;
     closed_form::PairContacts found;
+    bool has_thread = false;
 };
 
 /// Memory for the model's pairs. `model` outlives it.

@@ -127,7 +127,14 @@ const std::vector<shape::Shape> kShapes = {
     shape::BorePlate{24 * mm, 22 * mm, 14 * mm, 10.2 * mm, 9 * mm, 1 * mm},
     shape::SquareBorePlate{24 * mm, 22 * mm, 14 * mm, 10.2 * mm, 8.2 * mm, 14 * mm, 1 * mm},
     shape::KeyedBorePlate{26 * mm, 24 * mm, 14 * mm, 10.2 * mm, 3.2 * mm, 2.1 * mm, 14 * mm, 0.8 * mm},
+    shape::ThreadBolt{12 * mm, 2 * mm, 16 * mm, 1.5 * mm},
+    shape::ThreadNut{12.2 * mm, 2 * mm, 19 * mm, 10 * mm, 1.4 * mm},
 };
+
+bool isThread(const shape::Shape& shape) {
+    return std::holds_alternative<shape::ThreadBolt>(shape) || std::holds_alternative<shape::ThreadNut>(shape);
+}
+bool isBox(const shape::Shape& shape) { return std::holds_alternative<shape::Box>(shape); }
 
 Vec3 randomPoint(Random& random, double size) {
     return size * Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
@@ -187,6 +194,8 @@ TEST(ExactOverlap, IsThatOfDensePointsOfBothSurfacesForEveryPairOfShapes) {
     int met = 0;
     for (const shape::Shape& a : kShapes)
         for (const shape::Shape& b : kShapes) {
+            // Exact distances to threads take microseconds.
+            if ((isThread(a) && !isThread(b) && !isBox(b)) || (isThread(b) && !isThread(a) && !isBox(a))) continue;
             const OverlapBody body_a(a, 10 * um), body_b(b, 10 * um);
             for (int i = 0; i < 2; ++i) {
                 const Pose X{rotationFromVector(randomPoint(random, 3.0)), randomPoint(random, 24 * mm)};

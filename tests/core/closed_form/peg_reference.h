@@ -9,6 +9,7 @@
 
 #include "core/base/types.h"
 #include "core/shape/shape.h"
+#include "tests/core/closed_form/held_share.h"
 
 namespace passung::closed_form {
 
@@ -17,7 +18,7 @@ namespace passung::closed_form {
 /// where geometry has one.
 class PegReference {
 public:
-    using Row = Eigen::Matrix<double, 6, 1>;
+    using Row = MotionRowOfReference;
 
     PegReference(const shape::Peg& peg, const shape::BorePlate& plate, double rho, int points)
         : peg_(peg), plate_(plate), rho_(rho), points_(points) {}
@@ -39,7 +40,7 @@ public:
             row << n, (p - X.p).cross(n) / rho_;
             rows.push_back(row);
         });
-        return residual(rows, -pull);
+        return residualOf(rows, -pull);
     }
 
 private:
@@ -74,50 +75,6 @@ private:
             const double t = 2.0 * std::numbers::pi * i / points_;
             f(Vec3(radius * std::cos(t), radius * std::sin(t), z));
         }
-    }
-
-    /// min |Σ λ_i a_i - b|, λ ≥ 0.
-    static double residual(const std::vector<Row>& rows, const Row& b) {
-        std::vector<std::size_t> held;
-        std::vector<double> lambda;
-        Row rest = b;
-        for (int round = 0; round < 200; ++round) {
-            std::size_t best = rows.size();
-            double most = 1e-12;
-            for (std::size_t i = 0; i < rows.size(); ++i) {
-                const double along = rows[i].dot(rest);
-                if (along <= most || std::find(held.begin(), held.end(), i) != held.end()) continue;
-                most = along;
-                best = i;
-            }
-            if (best == rows.size()) break;
-            held.push_back(best);
-            lambda.push_back(0.0);
-            for (;;) {
-                Eigen::MatrixXd A(6, static_cast<Eigen::Index>(held.size()));
-                for (std::size_t k = 0; k < held.size(); ++k) A.col(static_cast<Eigen::Index>(k)) = rows[held[k]];
-                const Eigen::VectorXd x = A.completeOrthogonalDecomposition().solve(b);
-                double share = 1.0;
-                std::size_t out = held.size();
-                for (std::size_t k = 0; k < held.size(); ++k) {
-                    const double to = x[static_cast<Eigen::Index>(k)];
-                    if (to > 0.0 || lambda[k] - to <= 0.0) continue;
-                    if (const double s = lambda[k] / (lambda[k] - to); s < share || out == held.size()) {
-                        share = std::min(share, s);
-                        out = k;
-                    }
-                }
-                for (std::size_t k = 0; k < held.size(); ++k)
-                    lambda[k] += share * (x[static_cast<Eigen::Index>(k)] - lambda[k]);
-                if (out == held.size()) {
-                    rest = b - A * x;
-                    break;
-                }
-                held.erase(held.begin() + static_cast<std::ptrdiff_t>(out));
-                lambda.erase(lambda.begin() + static_cast<std::ptrdiff_t>(out));
-            }
-        }
-        return rest.norm();
     }
 
     shape::Peg peg_;

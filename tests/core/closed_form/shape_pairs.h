@@ -59,6 +59,37 @@ inline std::vector<ShapePair> shapePairs() {
     };
 }
 
+/// Bolts and nuts: see thread_reference.h.
+inline std::vector<ShapePair> threadPairs() {
+    using namespace shape;
+    return {
+        {"bolt_in_nut",
+         ThreadBolt{.00794, .00125, .02, .0009},
+         ThreadNut{.008, .00125, .013, .0065, .0008},
+         {0, 0, -.005},
+         {.001, .001, .001},
+         .05},
+        {"bolt_on_nut",
+         ThreadBolt{.00794, .00125, .012, .0},
+         ThreadNut{.008, .00125, .013, .0065, .0},
+         {0, 0, .0005},
+         {.004, .004, .002},
+         .5},
+        {"nut_on_bolt",
+         ThreadNut{.0121, .00175, .018, .008, .001},
+         ThreadBolt{.012, .00175, .03, .0015},
+         {0, 0, .02},
+         {.002, .002, .002},
+         .2},
+    };
+}
+
+inline std::vector<ShapePair> allPairs() {
+    std::vector<ShapePair> pairs = shapePairs(), threads = threadPairs();
+    pairs.insert(pairs.end(), threads.begin(), threads.end());
+    return pairs;
+}
+
 inline Vec3 randomVector(Random& random, const Vec3& size) {
     return {random.uniform(-size.x(), size.x()), random.uniform(-size.y(), size.y()),
             random.uniform(-size.z(), size.z())};

@@ -25,7 +25,9 @@ const std::vector<shape::Shape> kShapes{shape::Sphere{0.01},
                                         shape::BorePlate{0.03, 0.03, 0.02, 0.01, 0.015, 0.001},
                                         shape::BorePlate{0.03, 0.03, 0.02, 0.01, 0.02, 0.0},
                                         shape::SquareBorePlate{0.03, 0.03, 0.02, 0.01, 0.008, 0.02, 0.001},
-                                        shape::KeyedBorePlate{0.03, 0.03, 0.02, 0.01, 0.003, 0.0015, 0.02, 0.0005}};
+                                        shape::KeyedBorePlate{0.03, 0.03, 0.02, 0.01, 0.003, 0.0015, 0.02, 0.0005},
+                                        shape::ThreadBolt{0.01, 0.002, 0.008, 0.001},
+                                        shape::ThreadNut{0.01, 0.002, 0.016, 0.008, 0.001}};
 
 SurfaceBlock blockAt(const shape::Shape& shape, const Vec3& low, double cell) {
     SurfaceBlock block;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <tuple>
 
 namespace passung::scene {
 namespace {
@@ -53,6 +54,24 @@ TEST(ContactGeometry, AutoIsTheTruestThatAllPairsCanHave) {
         EXPECT_EQ(of(sceneOf({shaped(true, 0.3), meshed(false), shaped(false, 0.3)}, method)), Geometry::Field);
         EXPECT_EQ(of(sceneOf({meshed(true), meshed(false)}, method, 20.0)), Geometry::Field);
     }
+    const auto part = [](bool held, const shape::Shape& shape) {
+        PartSpec spec = shaped(held);
+        spec.geometry = shape;
+        return spec;
+    };
+    const shape::Shape bolt = shape::ThreadBolt{0.008, 0.00125, 0.02, 0.0},
+                       nut = shape::ThreadNut{0.0081, 0.00125, 0.013, 0.0065, 0.0}, box = shape::Box{0.02, 0.02, 0.02};
+    constexpr auto kGodObject = ContactMethod::GodObject;
+    for (const auto& [held, still, geometry] :
+         {std::tuple(bolt, nut, Geometry::ClosedForm), std::tuple(nut, bolt, Geometry::ClosedForm),
+          std::tuple(bolt, bolt, Geometry::Surface), std::tuple(nut, nut, Geometry::Surface),
+          std::tuple(bolt, box, Geometry::Surface), std::tuple(box, nut, Geometry::Surface)})
+        EXPECT_EQ(of(sceneOf({part(true, held), part(false, still)}, kGodObject)), geometry)
+            << shape::kindName(held) << " and " << shape::kindName(still);
+    EXPECT_FALSE(geometryProblem(sceneOf({part(true, bolt), part(false, nut)}, kGodObject)));
+    EXPECT_FALSE(geometryProblem(sceneOf({part(true, bolt), part(false, box)}, kGodObject)));
+    EXPECT_TRUE(geometryProblem(sceneOf({part(true, bolt), part(false, nut)}, kPenalty))) << "no field of a thread";
+    EXPECT_TRUE(geometryProblem(sceneOf({part(true, bolt), part(false, box)}, kGodObject, 20.0)));
     for (const PartSpec& still : {shaped(false), meshed(false), sheet()})
         EXPECT_EQ(of(sceneOf({shaped(true), still}, kPenalty)), Geometry::Field);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -42,6 +43,12 @@ const std::vector<Shape>& allShapes() {
         KeyedBorePlate{0.06, 0.05, 0.03, 0.0202, 0.0061, 0.0026, 0.02, 0.0},
         KeyedBorePlate{0.06, 0.05, 0.03, 0.0202, 0.0061, 0.0026, 0.02, 0.0015},
         KeyedBorePlate{0.06, 0.05, 0.03, 0.0202, 0.0061, 0.0026, 0.03, 0.0015},
+        ThreadBolt{0.008, 0.00125, 0.004, 0.0},
+        ThreadBolt{0.008, 0.00125, 0.005, 0.0004},
+        ThreadBolt{0.02, 0.005, 0.012, 0.004},
+        ThreadNut{0.008, 0.00125, 0.013, 0.003, 0.0},
+        ThreadNut{0.008, 0.00125, 0.013, 0.0033, 0.0003},
+        ThreadNut{0.02, 0.005, 0.03, 0.011, 0.0035},
     };
     return shapes;
 }
@@ -86,6 +93,15 @@ bool inKeyed(double diameter, double key_width, double key_height, double by, do
     return std::hypot(x, y) < radius || in_key;
 }
 
+/// ISO 68-1: crest of a bolt P/8 wide, root P/4, flanks 60° apart, 5/8 of the sharp triangle's height deep; a ridge's
+/// middle goes up by P a turn.
+double threadRadius(double diameter, double pitch, const Vec3& p) {
+    const double turns = p.z() / pitch - std::atan2(p.y(), p.x()) / (2 * pi);
+    const double off = std::abs(turns - std::round(turns)) * pitch;  // from the ridge's middle
+    const double depth = 5.0 / 8 * std::sqrt(3.0) / 2 * pitch;
+    return diameter / 2 - std::clamp((off - pitch / 16) * std::tan(pi / 3), 0.0, depth);
+}
+
 bool inBlock(double width, double depth, double height, const Vec3& p) {
     return std::abs(p.x()) < width / 2 && std::abs(p.y()) < depth / 2 && p.z() < 0.0 && p.z() > -height;
 }
@@ -121,6 +137,16 @@ bool isInside(const Shape& shape, const Vec3& p) {
         const bool in_pocket =
             z >= -b->bore_depth && inKeyed(b->bore_diameter, b->key_width, b->key_height, widened, x, y);
         return inBlock(b->width, b->depth, b->height, p) && !in_pocket;
+    }
+    if (const auto* b = std::get_if<ThreadBolt>(&shape))
+        return z > 0.0 && z < b->length && r < threadRadius(b->diameter, b->pitch, p) &&
+               r < b->diameter / 2 - b->chamfer + (b->chamfer > 0.0 ? z : 0.0);
+    if (const auto* n = std::get_if<ThreadNut>(&shape)) {
+        const double from_mouth = std::min(-z, n->height + z), a = n->width / 2, s = std::sqrt(3.0) / 2;
+        const double crest = n->diameter / 2 - 5.0 / 8 * s * n->pitch;
+        const bool in_hole = r <= threadRadius(n->diameter, n->pitch, p) || r <= crest + n->chamfer - from_mouth;
+        const bool in_hexagon = std::abs(x) < a && std::abs(x / 2 + s * y) < a && std::abs(x / 2 - s * y) < a;
+        return from_mouth > 0.0 && in_hexagon && !in_hole;
     }
     if (const auto* b = std::get_if<BorePlate>(&shape)) {
         const double widened = z > -b->chamfer ? b->chamfer + z : 0.0;
@@ -195,7 +221,50 @@ double plateArea(const Plate& b) {
            slopeOf(b, 0, b.chamfer).border + sectionOf(b, 0).border * (b.bore_depth - b.chamfer) + floor;
 }
 
+/// Of what is swept by r(φ, z) about the axis: volume, area of the swept face, areas of the two ends; by the midpoint
+/// rule on a fine lattice, the radius being piecewise linear.
+struct Swept {
+    double volume = 0.0, face = 0.0, ends = 0.0;
+};
+
+template <class Radius>
+Swept sweep(double low, double high, const Radius& radius) {
+    constexpr int kAround = 720, kAlong = 2000;
+    Swept sum;
+    const double dphi = 2 * pi / kAround, dz = (high - low) / kAlong;
+    for (int i = 0; i < kAround; ++i) {
+        const double phi = (i + 0.5) * dphi, e = 1e-3 * dphi, h = 1e-3 * dz;
+        sum.ends += 0.5 * dphi * (std::pow(radius(phi, low), 2) + std::pow(radius(phi, high), 2));
+        for (int k = 0; k < kAlong; ++k) {
+            const double z = low + (k + 0.5) * dz, r = radius(phi, z);
+            const double by_z = (radius(phi, z + h) - radius(phi, z - h)) / (2 * h);
+            const double by_phi = (radius(phi + e, z) - radius(phi - e, z)) / (2 * e);
+            sum.volume += 0.5 * r * r * dphi * dz;
+            sum.face += std::sqrt(r * r * (1 + by_z * by_z) + by_phi * by_phi) * dphi * dz;
+        }
+    }
+    return sum;
+}
+
+Swept sweptBy(const ThreadBolt& b) {
+    return sweep(0.0, b.length, [&](double phi, double z) {
+        const double r = threadRadius(b.diameter, b.pitch, {std::cos(phi), std::sin(phi), z});
+        return std::min(r, b.diameter / 2 - b.chamfer + (b.chamfer > 0.0 ? z : 0.0) + (b.chamfer > 0.0 ? 0.0 : 1.0));
+    });
+}
+
+Swept sweptBy(const ThreadNut& n) {
+    return sweep(-n.height, 0.0, [&](double phi, double z) {
+        const double r = threadRadius(n.diameter, n.pitch, {std::cos(phi), std::sin(phi), z});
+        const double crest = n.diameter / 2 - 5.0 / 8 * std::sqrt(3.0) / 2 * n.pitch;
+        return std::max(r, crest + n.chamfer - std::min(-z, n.height + z));
+    });
+}
+
 double exactVolume(const Shape& shape) {
+    if (const auto* b = std::get_if<ThreadBolt>(&shape)) return sweptBy(*b).volume;
+    if (const auto* n = std::get_if<ThreadNut>(&shape))
+        return std::sqrt(3.0) / 2 * n->width * n->width * n->height - sweptBy(*n).volume;
     if (const auto* t = std::get_if<Torus>(&shape))
         return pi * pi / 4 * t->diameter * t->tube_diameter * t->tube_diameter;
     if (const auto* g = std::get_if<SquarePeg>(&shape)) return pegVolume(*g);
@@ -217,6 +286,11 @@ double exactVolume(const Shape& shape) {
 }
 
 double exactArea(const Shape& shape) {
+    if (const auto* b = std::get_if<ThreadBolt>(&shape)) return sweptBy(*b).face + sweptBy(*b).ends;
+    if (const auto* n = std::get_if<ThreadNut>(&shape)) {
+        const Swept hole = sweptBy(*n);
+        return hole.face + std::sqrt(3.0) * n->width * n->width - hole.ends + 2 * std::sqrt(3.0) * n->width * n->height;
+    }
     if (const auto* t = std::get_if<Torus>(&shape)) return pi * pi * t->diameter * t->tube_diameter;
     if (const auto* g = std::get_if<SquarePeg>(&shape)) return pegArea(*g);
     if (const auto* g = std::get_if<KeyedPeg>(&shape)) return pegArea(*g);
@@ -271,10 +345,11 @@ TEST(Shape, DistanceToChamfersIsThatToAFineMesh) {
 }
 
 TEST(Shape, DistanceIsMirroredWhereTheShapeIs) {
-    // Truth: invariant. All shapes are mirror images of themselves in the plane y = 0, those without a key in x = 0
-    // too.
+    // Truth: invariant. All shapes but threads are mirror images of themselves in the plane y = 0, those without a key
+    // in x = 0 too.
     Random random(8);
     for (const Shape& shape : allShapes()) {
+        if (std::holds_alternative<ThreadBolt>(shape) || std::holds_alternative<ThreadNut>(shape)) continue;
         const bool keyed = std::holds_alternative<KeyedPeg>(shape) || std::holds_alternative<KeyedBorePlate>(shape);
         for (const Vec3& p : pointsAround(shape, 500, random)) {
             const double distance = signedDistance(shape, p);
@@ -495,6 +570,14 @@ TEST(ShapeValidation, NamesEachValueThatCannotBe) {
     EXPECT_EQ(keysOf(KeyedPeg{0.02, 0.05, 0.006, 0.0, 0.0}), Keys{"key_height"});
     EXPECT_EQ(keysOf(KeyedPeg{0.02, 0.05, 0.006, 0.002, 0.003}), Keys{"chamfer"});  // no key left at the tip
     EXPECT_EQ(keysOf(KeyedPeg{0.02, 0.001, 0.006, 0.002, 0.001}), Keys{"chamfer"});
+    EXPECT_EQ(keysOf(ThreadBolt{0.008, 0.0021, 0.02, 0.0}), Keys{"pitch"});
+    EXPECT_EQ(keysOf(ThreadBolt{0.008, 0.001, 0.0009, 0.0}), Keys{"length"});
+    EXPECT_EQ(keysOf(ThreadBolt{0.008, 0.001, 0.2, 0.0}), Keys{"length"});
+    EXPECT_EQ(keysOf(ThreadBolt{0.008, 0.001, 0.02, 0.004}), Keys{"chamfer"});
+    EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.008, 0.006, 0.0}), Keys{"diameter"});
+    EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.013, 0.0121, 0.0}), Keys{"height"});
+    EXPECT_EQ(keysOf(ThreadNut{0.008, nan, 0.013, 0.006, 0.0}), Keys{"pitch"});
+    EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.013, 0.006, 0.0031}), Keys{"chamfer"});  // mouths meet
     EXPECT_EQ(keysOf(SquareBorePlate{0.06, 0.05, 0.03, 0.06, 0.02, 0.02, 0.0}), Keys{"pocket_width"});
     EXPECT_EQ(keysOf(SquareBorePlate{0.06, 0.05, 0.03, 0.02, 0.05, 0.02, 0.0}), Keys{"pocket_depth"});
     EXPECT_EQ(keysOf(SquareBorePlate{0.06, 0.05, 0.03, 0.02, 0.048, 0.02, 0.001}), Keys{"chamfer"});

@@ -85,6 +85,10 @@ TEST(SceneReader, ReadsEveryShape) {
                        R"(key_width = 7, key_height = 4, bore_depth = "through")"),
               "keyed_bore_plate width 60 depth 50 height 30 bore_diameter 21 key_width 7 key_height 4 bore_depth 30 "
               "chamfer 0");
+    EXPECT_EQ(valuesOf(R"("thread_bolt", length = 50, pitch = 2, diameter = 20)"),
+              "thread_bolt diameter 20 pitch 2 length 50 chamfer 0");
+    EXPECT_EQ(valuesOf(R"("thread_nut", width = 30, pitch = 2, diameter = 20, height = 16, chamfer = 1)"),
+              "thread_nut diameter 20 pitch 2 width 30 height 16 chamfer 1");
 }
 
 const std::string kPartStart = "[[part]]\nname = \"p\"\nheld = true\n";
@@ -399,8 +403,8 @@ TEST(SceneReader, ReportsWhatDoesNotFitTogetherWhereItIsWritten) {
     EXPECT_EQ(
         errorsOf(start + "shape = { kind = \"pyramid\", diameter = 20 }\n"),
         "s.toml:4:18: error: part.p.shape.kind: \"pyramid\": must be \"sphere\", \"box\", \"cylinder\", \"torus\", "
-        "\"sheet\", \"peg\", \"square_peg\", \"keyed_peg\", \"bore_plate\", \"square_bore_plate\" or "
-        "\"keyed_bore_plate\"");
+        "\"sheet\", \"peg\", \"square_peg\", \"keyed_peg\", \"bore_plate\", \"square_bore_plate\", "
+        "\"keyed_bore_plate\", \"thread_bolt\" or \"thread_nut\"");
     EXPECT_EQ(errorsOf(start + "pose = { position = [1, 2] }\n"),
               "s.toml:1:1: error: part.p: needs a shape or a mesh\n"
               "s.toml:4:21: error: part.p.pose.position: [1, 2]: must be a list of three numbers");
