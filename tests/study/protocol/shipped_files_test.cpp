@@ -210,6 +210,8 @@ void expectSafe(Change change) {
         const std::size_t end = text.find('\n', start) + 1;
         const auto line = text.substr(start, end - start);
         const auto damaged = text.substr(0, start) + change(line) + text.substr(end);
+        start = end;
+        if (damaged == text) continue;  // a comment has no value
         const auto read = readProtocolText(damaged, "damaged.toml", devices, measures);
         if (!read) {
             ++refused;
@@ -218,7 +220,6 @@ void expectSafe(Change change) {
                 EXPECT_GE(error.line, 1) << toString(error);
             }
         }
-        start = end;
     }
     EXPECT_GT(refused, 20u) << "the damage must not go unnoticed";
 }
