@@ -9,6 +9,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/base/hash_mix.h"
+
 namespace passung::geometry {
 
 namespace {
@@ -45,10 +47,7 @@ private:
 
     static std::size_t hash(const Cell& cell) {
         std::uint64_t h = 0;
-        for (const std::int64_t c : cell) {
-            h = (h ^ static_cast<std::uint64_t>(c)) * 0x9e3779b97f4a7c15u;
-            h ^= h >> 32;
-        }
+        for (const std::int64_t c : cell) h = hashMix(h, static_cast<std::uint64_t>(c));
         return static_cast<std::size_t>(h);
     }
 

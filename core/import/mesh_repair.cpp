@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <numeric>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "core/base/hash_mix.h"
 #include "core/geometry/mesh_edges.h"
 #include "core/geometry/triangle_tree.h"
 #include "core/import/hole_closing.h"
@@ -77,10 +77,7 @@ public:
 private:
     static std::uint64_t hash(const Vec3& p) {
         std::uint64_t h = 0;
-        for (const double x : p) {
-            h = (h ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15u;  // -0 lies where 0 does
-            h ^= h >> 32;
-        }
+        for (const double x : p) h = hashMix(h, std::bit_cast<std::uint64_t>(x + 0.0));  // -0 lies where 0 does
         return h;
     }
 

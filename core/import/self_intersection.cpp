@@ -8,6 +8,8 @@
 #include <numeric>
 #include <vector>
 
+#include "core/base/hash_mix.h"
+
 namespace passung::importer {
 
 namespace {
@@ -114,10 +116,7 @@ private:
 
     std::size_t listOf(const Cell& cell, std::size_t level) const {
         std::uint64_t h = level;
-        for (const std::int64_t c : cell) {
-            h = (h ^ static_cast<std::uint64_t>(c)) * 0x9e3779b97f4a7c15u;
-            h ^= h >> 32;
-        }
+        for (const std::int64_t c : cell) h = hashMix(h, static_cast<std::uint64_t>(c));
         return static_cast<std::size_t>(h) & (begin_.size() - 2);
     }
 
