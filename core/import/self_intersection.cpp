@@ -128,10 +128,19 @@ private:
                 for (std::int64_t z = low[2]; z <= high[2]; ++z) visit(Cell{x, y, z});
     }
 
+    /// Each list that a box belongs to, once: cells of it may share one.
     template <class Visit>
     void forEachEntry(const Visit& visit) const {
-        for (std::uint32_t i = 0; i < boxes_.size(); ++i)
-            forEachCell(boxes_[i], levels_[i], [&](const Cell& cell) { visit(listOf(cell, levels_[i]), i); });
+        std::vector<std::size_t> lists;
+        for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
+            lists.clear();
+            forEachCell(boxes_[i], levels_[i], [&](const Cell& cell) {
+                const std::size_t list = listOf(cell, levels_[i]);
+                if (std::find(lists.begin(), lists.end(), list) != lists.end()) return;
+                lists.push_back(list);
+                visit(list, i);
+            });
+        }
     }
 
     const std::vector<geometry::Bounds>& boxes_;

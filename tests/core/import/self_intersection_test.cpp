@@ -104,6 +104,29 @@ TEST(SelfIntersection, FindsWhatEveryPairLookedAtGives) {
     EXPECT_GT(found, 1000u);
 }
 
+TEST(SelfIntersection, CountsEachPairTwiceWhereverItLies) {
+    // Truth: closed form: from either side. Pairs far from each other, one triangle upright in the other, of any size.
+    Random random(6);
+    constexpr int kPairs = 500;
+    for (int round = 0; round < 40; ++round) {
+        geometry::TriangleMesh mesh;
+        for (int i = 0; i < kPairs; ++i) {
+            const double size = std::pow(10.0, random.uniform(-2.0, 0.0));
+            const Vec3 at = 8.0 * Vec3(i % 8, i / 8 % 8, i / 64) +
+                            Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+            const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+            for (const Vec3& p :
+                 {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0), Vec3(1, 1, -1), Vec3(1.2, 1, 1), Vec3(0.8, 1, 1)})
+                mesh.vertices.push_back(at + 0.5 * size * p);
+            mesh.triangles.push_back({base, base + 1, base + 2});
+            mesh.triangles.push_back({base + 3, base + 4, base + 5});
+        }
+        const Crossings found = crossingsOf(mesh);
+        EXPECT_EQ(found.pairs, 2u * kPairs);
+        EXPECT_EQ(found.triangles, 2u * kPairs);
+    }
+}
+
 TEST(SelfIntersection, CountsNoTouch) {
     // Truth: closed form. Two boxes that share a face, an edge or a corner touch; pushed 1 mm into each other at an
     // angle of none of their axes they cross.
