@@ -112,8 +112,7 @@ static bool meets(const Bounds& box, const TriangleTree::Corners& t) {
     return meet(box, t.a.cwiseMin(t.b).cwiseMin(t.c), t.a.cwiseMax(t.b).cwiseMax(t.c));
 }
 
-/// Looks into the nodes that `enters` lets through, and gives the triangles of their leaves to `visit`, in tree order,
-/// until it says false.
+/// Looks into the nodes that `enters` lets through, and gives the triangles of their leaves to `visit`, in tree order.
 template <class Enters, class Visit>
 void TriangleTree::walk(Enters enters, Visit visit) const {
     std::array<std::uint32_t, kStack> stack;
@@ -127,17 +126,13 @@ void TriangleTree::walk(Enters enters, Visit visit) const {
             stack[static_cast<std::size_t>(size++)] = node.first;
             continue;
         }
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-            if (!visit(i)) return;
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) visit(i);
     }
 }
 
 void TriangleTree::findNear(const Vec3& p, double radius, std::vector<std::uint32_t>& found) const {
     walk([&](const Node& node) { return squaredToBox(p, node.low, node.high) <= radius * radius; },
-         [&](std::uint32_t i) {
-             found.push_back(i);
-             return true;
-         });
+         [&](std::uint32_t i) { found.push_back(i); });
 }
 
 void TriangleTree::findAbove(const Bounds& box, const Vec3& way, double least,
@@ -151,7 +146,6 @@ void TriangleTree::findAbove(const Bounds& box, const Vec3& way, double least,
         [&](std::uint32_t i) {
             const Corners& t = corners_[i];
             if (std::max({way.dot(t.a), way.dot(t.b), way.dot(t.c)}) >= least && meets(box, t)) found.push_back(i);
-            return true;
         });
 }
 
@@ -178,10 +172,7 @@ void TriangleTree::findNearest(const Vec3& centre, double half, std::vector<std:
                         above[i];
             return near;
         },
-        [&](std::uint32_t i) {
-            found.push_back(i);
-            return true;
-        });
+        [&](std::uint32_t i) { found.push_back(i); });
 }
 
 TrianglePair TriangleTree::closestTo(const TriangleCorners& triangle, double limit) const {
@@ -249,17 +240,6 @@ double TriangleTree::windingNumber(const Vec3& p) const {
         near_sum += leaf.value();
     }
     return (2.0 * near_sum + far_sum) / (4.0 * std::numbers::pi);
-}
-
-void TriangleTree::collectWithin(const Bounds& box, std::size_t most, std::vector<std::uint32_t>& triangles) const {
-    triangles.clear();
-    walk([&](const Node& node) { return meet(box, node.low, node.high); },
-         [&](std::uint32_t i) {
-             if (!meets(box, corners_[i])) return true;
-             if (triangles.size() == most) return false;
-             triangles.push_back(original_[i]);
-             return true;
-         });
 }
 
 }  // namespace passung::geometry

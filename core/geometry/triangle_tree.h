@@ -65,9 +65,6 @@ public:
 
     bool inside(const Vec3& p) const { return windingNumber(p) > 0.5; }
 
-    /// The triangles whose boxes meet `box`, in the order of the tree, the first `most` of them, into `triangles`.
-    void collectWithin(const Bounds& box, std::size_t most, std::vector<std::uint32_t>& triangles) const;
-
 private:
     static constexpr int kSahDepth = 32;           // below: halves, so that the depth stays under kStack
     static constexpr int kStack = kSahDepth + 40;  // log2(2^32) and slack
