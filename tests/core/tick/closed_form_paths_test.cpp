@@ -10,6 +10,7 @@
 #include "core/base/random.h"
 #include "core/tick/closed_form_proxy.h"
 #include "tests/core/closed_form/peg_reference.h"
+#include "tests/core/tick/wander.h"
 #include "tests/hard/dense_overlap.h"
 #include "tests/support/scenes.h"
 #include "tests/support/surface_cases.h"
@@ -38,34 +39,15 @@ scene::SceneSpec sceneOf(const shape::Shape& held, const Pose& start, const shap
     return spec;
 }
 
-/// A smooth function in [-1, 1] that begins at rest at 0.
-class Wander {
-public:
-    Wander(Random& random, double most_hz) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            rate_[i] = 2.0 * std::numbers::pi * random.uniform(0.1, most_hz);
-            phase_[i] = random.uniform(0.0, 2.0 * std::numbers::pi);
-        }
-    }
-    double at(double t) const {
-        const double s = std::min(1.0, t / 0.8), ramp = s * s * (3.0 - 2.0 * s);
-        double sum = 0.0;
-        for (std::size_t i = 0; i < 3; ++i) sum += std::sin(rate_[i] * t + phase_[i]);
-        return ramp * sum / 3.0;
-    }
-
-private:
-    std::array<double, 3> rate_, phase_;
-};
-
 constexpr double kInserted = 0.5;  // [s]: the peg is in the bore
+constexpr double kRamp = 0.8;      // [s]: until it wanders freely
 
 /// Into the bore, then about in it: pulled aside with up to 6 N, tilted by up to 3 degrees, turned.
 struct PegHand {
     Random random;
     double middle, amplitude;  // of the tip's depth [m]
-    std::array<Wander, 5> wander{Wander(random, 1.2), Wander(random, 1.2), Wander(random, 0.6), Wander(random, 1.2),
-                                 Wander(random, 1.2)};
+    std::array<test::Wander, 5> wander{
+        {{random, 1.2, kRamp}, {random, 1.2, kRamp}, {random, 0.6, kRamp}, {random, 1.2, kRamp}, {random, 1.2, kRamp}}};
 
     Pose at(double t) const {
         const double in = std::min(1.0, t / kInserted), inside = std::max(0.0, t - kInserted);

@@ -10,6 +10,7 @@
 
 #include "analysis/truth/least_energy.h"
 #include "core/base/random.h"
+#include "tests/core/tick/wander.h"
 #include "tests/hard/dense_overlap.h"
 #include "tests/support/scenes.h"
 
@@ -27,26 +28,6 @@ inline constexpr double kStill = 1e-7;               // way of a proxy that is c
 inline constexpr double kMoves = 2e-6;               // way of hand and reference that is none of rest [m]
 inline constexpr int kEvery = 40;                    // ticks of which one's overlap is measured
 inline constexpr double kStart = 0.4;                // seconds until a path has come to where it wanders
-
-/// A smooth function in [-1, 1] that begins at rest at 0: three sines under a ramp.
-class Wander {
-public:
-    Wander(Random& random, double most_hz) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            rate_[i] = 2.0 * std::numbers::pi * random.uniform(0.1, most_hz);
-            phase_[i] = random.uniform(0.0, 2.0 * std::numbers::pi);
-        }
-    }
-    double at(double t) const {
-        const double s = std::clamp(t / 0.5, 0.0, 1.0), ramp = s * s * (3.0 - 2.0 * s);
-        double sum = 0.0;
-        for (std::size_t i = 0; i < 3; ++i) sum += std::sin(rate_[i] * t + phase_[i]);
-        return ramp * sum / 3.0;
-    }
-
-private:
-    std::array<double, 3> rate_{}, phase_{};
-};
 
 /// Where a hand wanders.
 struct Kind {
@@ -70,7 +51,7 @@ class Hand {
 public:
     Hand(const Pair& pair, const Kind& kind, std::uint64_t seed) : start_(pair.start), kind_(kind) {
         Random random(seed);
-        for (int i = 0; i < 6; ++i) wander_.emplace_back(random, i == 2 ? 0.8 : 1.5);
+        for (int i = 0; i < 6; ++i) wander_.emplace_back(random, i == 2 ? 0.8 : 1.5, 0.5);
     }
     Pose at(double t) const {
         const double s = std::clamp(t / kStart, 0.0, 1.0), in = s * s * (3.0 - 2.0 * s);
@@ -85,7 +66,7 @@ public:
 private:
     Vec3 start_;
     Kind kind_;
-    std::vector<Wander> wander_;
+    std::vector<test::Wander> wander_;
 };
 
 /// 0 in the bore, 1 mouth and floor too, 2 pressed on the floor, 3 the tip's edge about the mouth, 4 on the top face
