@@ -67,9 +67,7 @@ endfunction()
 set(PASSUNG_COLD_OPTIONS $<$<NOT:$<CONFIG:Debug>>:-O1>)
 set(PASSUNG_COLD_ROOMS "^(core/scene|devices/.*|analysis/(accuracy|export|power|stats|tick_accuracy)|study/(design|plan|protocol|run|session|store/(schema|rows|read|write|people|transfer))|ui/.*)$")
 
-# Rooms that the tick runs stay in many pieces, so that an edit there is tested soon; with PASSUNG_TICK_ONE_PIECE, as the
-# preset `program` has it for who only runs it, they do not.
-set(PASSUNG_TICK_ROOMS "^core/(field|shell|contact|motion|closed_form|surface|tick|query|loop)$")
+include(${CMAKE_CURRENT_LIST_DIR}/tick_rooms.cmake)
 
 # passung_cold(TARGET "what TARGET links"): neither it nor its headers are optimised at length.
 function(passung_cold target links)

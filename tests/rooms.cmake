@@ -3,6 +3,7 @@
 # file:line: message and fails.
 cmake_policy(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/../cmake/doors.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/../cmake/tick_rooms.cmake)
 
 # Each room and the rooms it may include besides itself. Arrows point only upward.
 set(model_rooms "core/geometry core/import core/shape core/field core/shell core/scene")
@@ -217,6 +218,26 @@ function(defined_type line result)
   endif()
 endfunction()
 
+# Sets `name` to the name of the constant that a line at the margin defines; empty if none.
+function(defined_constant line result)
+  set(${result} "" PARENT_SCOPE)
+  if(line MATCHES "^(constexpr|const) [^=({]* (k[A-Z][A-Za-z0-9]*)( =|{|_|$)")
+    set(${result} ${CMAKE_MATCH_2} PARENT_SCOPE)
+  endif()
+endfunction()
+
+# Sets `complaint` if another source of the folder defines the name too: the preset `program` compiles both as one piece.
+function(judge_name file name)
+  set(complaint "" PARENT_SCOPE)
+  get_filename_component(folder ${file} DIRECTORY)
+  set(other "${source_of_${folder}_${name}}")
+  if(name AND other AND NOT other STREQUAL file)
+    set(complaint "${name} is defined by ${other} too" PARENT_SCOPE)
+  elseif(name)
+    set(source_of_${folder}_${name} ${file} PARENT_SCOPE)
+  endif()
+endfunction()
+
 set(faults)
 set(types)  # that headers define; rooms_of_<type> says where
 set(hidden_types)  # file|line|room|type of those that a .cpp keeps to itself
@@ -259,7 +280,17 @@ foreach(folder core devices study analysis ui protocols tests)
             list(APPEND hidden_types "${file}|${number}|${room}|${type}")
           endif()
         endif()
-        continue()
+        set(complaint "")
+        if(room MATCHES "${PASSUNG_TICK_ROOMS}" AND file MATCHES "[.]cpp$" AND line MATCHES "^(struct|class|enum|using|const|constexpr) ")
+          defined_type("${line}" name)
+          if(NOT name)
+            defined_constant("${line}" name)
+          endif()
+          judge_name(${file} "${name}")
+        endif()
+        if(NOT complaint)
+          continue()
+        endif()
       endif()
       math(EXPR include_count "${include_count} + 1")
       if(complaint)

@@ -9,7 +9,6 @@ namespace passung::closed_form {
 namespace {
 
 constexpr std::size_t kRoom = CircleSamples::kRoom;
-constexpr double kOnAxis = 1e-12;  // [m], as in face.cpp
 
 using Row = CircleSamples::Row<double>;
 

@@ -8,8 +8,6 @@ namespace passung::closed_form {
 
 namespace {
 
-constexpr double kOnAxis = 1e-12;  // [m]
-
 /// A point about an axis.
 struct AboutAxis {
     double z = 0.0, r = 0.0;

@@ -4,6 +4,8 @@
 
 namespace passung::closed_form {
 
+inline constexpr double kOnAxis = 1e-12;  // so near to a face's axis no direction leads away from it [m]
+
 /// A smooth face of a solid as a function of a point: its signed distance to the whole plane, cylinder, cone, sphere or
 /// torus, positive outside the material. Its gradient has length 1. Cylinders and cones may be hollow: material outside
 /// of them.

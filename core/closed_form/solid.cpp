@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/closed_form/solid_parts.h"
 #include "core/closed_form/thread_solid.h"
 
 namespace passung::closed_form {
@@ -31,10 +32,6 @@ Curve arcBeside(const Vec3& centre, double radius, double half) {
     arc.e2 = -arc.e2;
     arc.end = std::numbers::pi - std::asin(half / radius);
     return arc;
-}
-
-Curve straight(const Vec3& from, const Vec3& to) {
-    return {Curve::Kind::Straight, 0.5 * (from + to), 0.5 * (to - from), Vec3::Zero(), 1.0, 0.0};
 }
 
 /// A convex polyhedron between parallel outlines, each the rectangle |x| <= hx, |y| <= hy at a height.
@@ -63,11 +60,6 @@ void addSides(double hx, double hy, Lump& lump) {
         lump.faces.push_back(plane({sign * hx, 0, 0}, {sign, 0, 0}));
         lump.faces.push_back(plane({0, sign * hy, 0}, {0, sign, 0}));
     }
-}
-
-void addEnds(double low, double high, Lump& lump) {
-    lump.faces.push_back(plane({0, 0, high}, {0, 0, 1}));
-    lump.faces.push_back(plane({0, 0, low}, {0, 0, -1}));
 }
 
 SmoothSolid solidFrom(const shape::Sphere& s) {
@@ -307,18 +299,18 @@ std::optional<SmoothSolid> solidFrom(const shape::Sheet&) { return std::nullopt;
 SmoothSolid solidFrom(const shape::ThreadBolt& bolt) { return threadSolid(bolt); }
 SmoothSolid solidFrom(const shape::ThreadNut& nut) { return threadSolid(nut); }
 
-constexpr double kOnFace = 2e-8;  // of a conic in pieces [m]
+constexpr double kConicOnFace = 2e-8;  // of a conic in pieces [m]
 
 /// The faces of a lump that meet in an edge, where they are two, and those at which it ends, where three meet.
 void nameFaces(const Lump& lump, Curve& edge) {
     if (edge.kind == Curve::Kind::Spiral) return;
     const auto isOn = [&](const Face& face, double share) {
-        return std::abs(valueOf(face, pointOf(edge, share * edge.end))) < kOnFace;
+        return std::abs(valueOf(face, pointOf(edge, share * edge.end))) < kConicOnFace;
     };
     std::vector<Face> sides;
     for (const Face& face : lump.faces)
         if (isOn(face, -0.9) && isOn(face, 0.1) && isOn(face, 0.8)) sides.push_back(face);
-    if (edge.sides || sides.size() != 2 || valueOf(lump, pointOf(edge, 0.1 * edge.end)) > kOnFace) return;
+    if (edge.sides || sides.size() != 2 || valueOf(lump, pointOf(edge, 0.1 * edge.end)) > kConicOnFace) return;
     edge.sides = std::array{sides[0], sides[1]};
     if (edge.kind != Curve::Kind::Straight) return;
     for (const double end : {-1.0, 1.0}) {

@@ -22,12 +22,12 @@ constexpr double kSamePitch = 1e-12;
 constexpr double kLeastRadius = 1e-12;  // [m]
 
 /// A lump's function along a line.
-class Walk {
+class SpiralWalk {
 public:
     static constexpr double kEnough = 1e-7;  // [rad]: of the gap less than a picometre, where two faces cross 1e-10 m
     using Point = ThreadPoint;
 
-    Walk(const Curve& line, const LinePiece& piece, const Lump& lump) noexcept : line_(line), lump_(lump) {
+    SpiralWalk(const Curve& line, const LinePiece& piece, const Lump& lump) noexcept : line_(line), lump_(lump) {
         std::array<double, kMostFaces> values{};
         const std::size_t all = std::min(lump.faces.size(), kMostFaces);
         for (std::size_t i = 0; i < all; ++i) {
@@ -142,21 +142,21 @@ double boundOfHelix(const Curve& line, const LinePiece& piece, const Lump& lump)
     return least - off;
 }
 
-using Sample = SampleOn<Walk>;
+using SpiralSample = SampleOn<SpiralWalk>;
 
 class ThreadSearch {
 public:
-    ThreadSearch(const Walk& walk, double reach, Touches& touches) noexcept
+    ThreadSearch(const SpiralWalk& walk, double reach, Touches& touches) noexcept
         : walk_(walk), reach_(reach), touches_(touches) {}
 
     double search(const LinePiece& piece, const ThreadSamples& samples) noexcept {
         const double speed = piece.speed;
         double least = std::numeric_limits<double>::infinity();
-        Sample low = sampled(samples[0]);
+        SpiralSample low = sampled(samples[0]);
         double bound = boundAt(low);
         for (std::size_t i = 0; i < samples.pieces(); ++i) {
             if (i % kFan == 0) addFixed(walk_, low, reach_, touches_);
-            Sample high = sampled(samples[i + 1]);
+            SpiralSample high = sampled(samples[i + 1]);
             const double farthest = speed * (high.at.t - low.at.t);
             const double bound_high = boundAt(high), between = 0.5 * (bound + bound_high - farthest);
             least = std::min(least, between);
@@ -171,8 +171,8 @@ public:
     }
 
 private:
-    Sample sampled(const ThreadPoint& point) const noexcept {
-        Sample sample;
+    SpiralSample sampled(const ThreadPoint& point) const noexcept {
+        SpiralSample sample;
         sample.at = point;
         sample.face = walk_.highest(point, sample.value);
         sample.slope = walk_.slope(*sample.face, point);
@@ -180,38 +180,38 @@ private:
     }
 
     /// Of the function there, and of what it is when the next turn's flank begins to count: no sample changes faster.
-    double boundAt(const Sample& sample) const noexcept {
+    double boundAt(const SpiralSample& sample) const noexcept {
         if (sample.face != walk_.flank()) return sample.value;
         return std::min(sample.value, beforeNextRidge(*sample.face, sample.at.p.z(), sample.at.phi));
     }
 
     /// In pieces in which the line does not go far across ridges.
-    void look(const Sample& low, const Sample& high) noexcept {
+    void look(const SpiralSample& low, const SpiralSample& high) noexcept {
         const Face* flank = walk_.flank();
         if (flank == nullptr) return bracket(low, high);
         const double begin = low.at.t, span = high.at.t - begin;
-        const double across =
-            span / flank->pitch *
-            std::max(std::abs(Walk::acrossRidges(*flank, low.at)), std::abs(Walk::acrossRidges(*flank, high.at)));
+        const double across = span / flank->pitch *
+                              std::max(std::abs(SpiralWalk::acrossRidges(*flank, low.at)),
+                                       std::abs(SpiralWalk::acrossRidges(*flank, high.at)));
         const int pieces = std::clamp(static_cast<int>(std::ceil(std::min(across / kAcross, 1e3))), 1, kMostAcross);
         if (pieces == 1) return lookAtTurns(low, high);
-        Sample from = low;
+        SpiralSample from = low;
         for (int i = 1; i <= pieces; ++i) {
-            const Sample to = i < pieces ? sampleAt(walk_, begin + span * i / pieces) : high;
+            const SpiralSample to = i < pieces ? sampleAt(walk_, begin + span * i / pieces) : high;
             lookAtTurns(from, to);
             from = to;
         }
     }
 
     /// Where the line passes the middle of a ridge, only what lies on its side of the flank counts.
-    void lookAtTurns(const Sample& low, const Sample& high) noexcept {
+    void lookAtTurns(const SpiralSample& low, const SpiralSample& high) noexcept {
         const Face& flank = *walk_.flank();
         const double side = flank.along > 0.0 ? 1.0 : -1.0;
         const auto outwards = [&](const ThreadPoint& at) { return side * fromRidge(flank, at.p.z(), at.phi); };
         const double at_low = outwards(low.at), at_high = outwards(high.at);
         const bool passes = (at_low > 0.0) != (at_high > 0.0) && std::abs(at_low - at_high) < 0.5 * flank.pitch;
         if (!passes) return bracket(low, high);
-        Sample middle;
+        SpiralSample middle;
         middle.at = walk_.at(
             zeroBetween(low.at.t, high.at.t, at_low, at_high, [&](double t) { return outwards(walk_.at(t)); }));
         middle.face = walk_.besideFlank(middle.at, middle.value);
@@ -220,7 +220,7 @@ private:
         at_low > 0.0 ? bracket(low, middle) : bracket(middle, high);
     }
 
-    void bracket(const Sample& low, const Sample& high) noexcept {
+    void bracket(const SpiralSample& low, const SpiralSample& high) noexcept {
         if (!(low.slope < 0.0 && high.slope >= 0.0)) return;
         // Parallel, but for less than what a fixed point tells as well.
         if (low.face == high.face && high.slope - low.slope < kLevel * (high.at.t - low.at.t)) return;
@@ -228,7 +228,7 @@ private:
         if (touch.gap <= reach_) touches_.add(touch);
     }
 
-    const Walk& walk_;
+    const SpiralWalk& walk_;
     double reach_;
     Touches& touches_;
 };
@@ -248,7 +248,7 @@ struct TurnSamples {
         }
     }
 };
-const TurnSamples kTurn;
+const TurnSamples kTurnSamples;
 
 /// Point and slope of a spiral, `out` and `around` being its directions there.
 void placeOn(const Curve& spiral, double t, const Vec3& out, const Vec3& around, ThreadPoint& at) noexcept {
@@ -298,7 +298,7 @@ void ThreadSamples::takeTurn(const Curve& spiral, const LinePiece& piece) noexce
     const double level = std::sqrt(e1.x() * e1.x() + e1.y() * e1.y()), begin = std::atan2(e1.y(), e1.x());
     const bool upright = spiral.e3.z() > 0.5;
     for (std::size_t i = 0; i < pieces_; ++i) {
-        const double turned = kPiece * static_cast<double>(i), ct = kTurn.cosine[i], st = kTurn.sine[i];
+        const double turned = kPiece * static_cast<double>(i), ct = kTurnSamples.cosine[i], st = kTurnSamples.sine[i];
         ThreadPoint& at = points_[i];
         placeOn(spiral, piece.begin + turned, ct * e1 + st * e2, ct * e2 - st * e1, at);
         const double x = (ct * e1.x() - st * e1.y()) / level, y = (st * e1.x() + ct * e1.y()) / level;
@@ -326,7 +326,7 @@ double searchAlongThread(const Curve& edge, const LinePiece& piece, const Thread
                          double reach, Touches& touches) noexcept {
     const double bound = boundOfHelix(edge, piece, lump);
     if (bound > reach) return bound;
-    const Walk walk(edge, piece, lump);
+    const SpiralWalk walk(edge, piece, lump);
     if (walk.least() > reach) return walk.least();
     return ThreadSearch(walk, reach, touches).search(piece, samples);
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/closed_form/solid_parts.h"
 #include "core/shape/thread.h"
 
 namespace passung::closed_form {
@@ -119,11 +120,6 @@ void addRidges(const ThreadForm& form, double middle, bool hollow, const Lump& r
     }
 }
 
-void addEnds(double low, double high, Lump& lump) {
-    lump.faces.push_back(plane({0, 0, high}, {0, 0, 1}));
-    lump.faces.push_back(plane({0, 0, low}, {0, 0, -1}));
-}
-
 /// The hexagon's sides, with their edges.
 void addHexagon(const shape::ThreadNut& nut, Lump& lump, SmoothSolid& solid) {
     const double half = 0.5 * nut.width, corner = nut.width / std::numbers::sqrt3;
@@ -132,13 +128,7 @@ void addHexagon(const shape::ThreadNut& nut, Lump& lump, SmoothSolid& solid) {
         return Vec3(std::cos(phi), std::sin(phi), 0.0);
     };
     const Vec3 down(0.0, 0.0, -nut.height);
-    const auto edge = [&](const Vec3& from, const Vec3& to) {
-        Curve curve;
-        curve.kind = Curve::Kind::Straight;
-        curve.centre = 0.5 * (from + to);
-        curve.e1 = 0.5 * (to - from);
-        solid.edges.push_back(curve);
-    };
+    const auto edge = [&](const Vec3& from, const Vec3& to) { solid.edges.push_back(straight(from, to)); };
     for (int i = 0; i < 6; ++i) {
         const Vec3 normal = direction(i), from = corner * direction(i - 0.5), to = corner * direction(i + 0.5);
         lump.faces.push_back(plane(half * normal, normal));

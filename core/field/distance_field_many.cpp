@@ -26,7 +26,7 @@ PASSUNG_INLINE int isWithin(double value, double low, double high) {
     return static_cast<int>(value >= low) & static_cast<int>(value < high);
 }
 
-constexpr float kSlackUnit = 1.0f / 255.0f * (1.0f + 0x1p-20f);
+constexpr float kFloatSlackUnit = 1.0f / 255.0f * (1.0f + 0x1p-20f);
 /// More than single precision adds to a value of a brick, in steps, with the half step of storing it.
 constexpr float kStepMargin = 0.6f;
 /// What some roundings in single precision change a number by, relatively.
@@ -167,7 +167,7 @@ struct DistanceField::Block {
             if constexpr (kBounds) {
                 const float cells = std::abs(head[i].cells);  // a power of two times those of a largest brick
                 const float held =
-                    static_cast<float>(field.slacks_[k][octant(i, 0.25 * static_cast<double>(cells))]) * kSlackUnit;
+                    static_cast<float>(field.slacks_[k][octant(i, 0.25 * static_cast<double>(cells))]) * kFloatSlackUnit;
                 edge[i] = largest_brick / cells;
                 slack[i] = field.bounded_within_ >= 0.0 ? 1.0f : held;
                 most[i] = field.bounded_within_ >= 0.0 ? held * held * edge[i] : std::numeric_limits<float>::infinity();
