@@ -1,6 +1,7 @@
 #include "core/surface/pair_forest.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace passung::surface {
@@ -8,13 +9,15 @@ namespace passung::surface {
 namespace {
 
 constexpr std::uint32_t kNone = ClusterPair::kNoPair;
+constexpr std::int64_t kBits = 64;  // of a word
 
 }  // namespace
 
 PairForest::PairForest(std::size_t most)
     : pairs_(std::max<std::size_t>(most, 1)),
       heads_(NormalClass::kCount * kBuckets, kNone),
-      counts_(NormalClass::kCount * kBuckets, 0) {
+      counts_(NormalClass::kCount * kBuckets, 0),
+      filled_(NormalClass::kCount * kBuckets / kBits, 0) {
     restart();
 }
 
@@ -24,6 +27,7 @@ void PairForest::restart() noexcept {
             const std::size_t slot = slotOf(pairs_[i].normals, pairs_[i].key);
             heads_[slot] = kNone;
             counts_[slot] = 0;
+            mark(slot, false);
         }
     waiting_ = free_ = kNone;
     next_.fill(0);
@@ -93,6 +97,7 @@ void PairForest::sleep(std::uint32_t pair, const Vec3& n, double s) noexcept {
     const std::size_t slot = slotOf(normals, key);
     putIn(heads_[slot], pair);
     ++counts_[slot];
+    mark(slot, true);
 }
 
 void PairForest::wait(std::uint32_t pair) noexcept {
@@ -118,7 +123,28 @@ void PairForest::takeOut(std::uint32_t pair) noexcept {
     else
         head = gone.after;
     if (gone.after != kNone) pairs_[gone.after].before = gone.before;
-    if (asleep) --counts_[slot];
+    if (asleep && --counts_[slot] == 0) mark(slot, false);
+}
+
+void PairForest::mark(std::size_t slot, bool filled) noexcept {
+    const std::uint64_t bit = std::uint64_t{1} << (slot % kBits);
+    if (filled)
+        filled_[slot / kBits] |= bit;
+    else
+        filled_[slot / kBits] &= ~bit;
+}
+
+/// The first bucket before `end` in which some pair sleeps; `end` if there is none.
+std::int64_t PairForest::filledFrom(std::size_t normals, std::int64_t from, std::int64_t end) const noexcept {
+    const std::int64_t last = std::min(end, from + kBuckets);
+    for (std::int64_t at = from; at < last;) {
+        const std::size_t slot = slotOf(normals, at);
+        const std::int64_t bit = at % kBits;
+        const std::uint64_t word = filled_[slot / kBits] >> bit;
+        if (word != 0) return std::min(end, at + std::countr_zero(word));
+        at += kBits - bit;
+    }
+    return end;
 }
 
 void PairForest::travel(const PerClass& nearer) noexcept {
@@ -130,6 +156,8 @@ std::size_t PairForest::wake(std::size_t normals, double s, std::size_t most) no
     std::size_t woken = 0;
     std::int64_t& next = next_[normals];
     for (bool first = true; next < end; ++next, first = false) {
+        if (!first) next = filledFrom(normals, next, end);
+        if (next == end) break;
         const std::size_t slot = slotOf(normals, next);
         if (!first && woken + counts_[slot] > most) break;
         woken += counts_[slot];

@@ -77,9 +77,13 @@ private:
         return normals * static_cast<std::size_t>(kBuckets) + static_cast<std::size_t>(bucket % kBuckets);
     }
 
+    void mark(std::size_t slot, bool filled) noexcept;
+    std::int64_t filledFrom(std::size_t normals, std::int64_t from, std::int64_t end) const noexcept;
+
     static constexpr std::int64_t kBuckets = 2048;  // of a class
     std::vector<ClusterPair> pairs_;
     std::vector<std::uint32_t> heads_, counts_;
+    std::vector<std::uint64_t> filled_;                     // a bit a slot: some pair sleeps there
     PerClass travelled_{};                                  // S_c [m]
     std::array<std::int64_t, NormalClass::kCount> next_{};  // the first bucket that was not woken
     std::uint32_t waiting_ = ClusterPair::kNoPair, free_ = ClusterPair::kNoPair;

@@ -309,6 +309,9 @@ void SurfaceProxy::addRow(NearPair& near) noexcept {
 
 /// The look's end becomes the pose; its planes those of the pairs.
 void SurfaceProxy::accept() noexcept {
+    rest_before_ = rest_;
+    gone_ = u_;
+    if (limited_ && rounds_ == 0) trust_ = std::max(trust_, std::min(2.0 * trust_, kFastest));
     X_ = X_next_;
     P_ = P_next_;
     forest_.travel(nearer_);

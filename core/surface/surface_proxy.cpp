@@ -11,8 +11,8 @@ namespace {
 constexpr double kStill = 1e-8;                  // [m]: a motion below this is none
 constexpr double kGoodEnough = 2e-6;             // [m]: what a look leaves is of second order
 constexpr double kGoodShare = 0.03;              // of a tick's way, the same
+constexpr double kLeastLeft = 0.05;              // of a tick's way: for less no look is begun
 constexpr double kLeastTrust = 2e-5;             // [m]
-constexpr double kFastest = 1e-3;                // of the proxy where the hand is slower [m/tick]
 constexpr double kEase = 3e-7;                   // of a gap that is too small [m/tick]
 constexpr double kOpening = 1e-8;                // of the gap that is held [m/tick]
 constexpr std::array kMoreShare{0.1, 0.4, 1.0};  // of a look's way: what it may change by without waking more
@@ -27,8 +27,10 @@ constexpr double kTouches = 1.2;                 // gaps: a row no farther away 
 constexpr double kUnlimited = 0.1;               // [m]: the least gap where nothing is near
 constexpr std::size_t kMostWoken = 2500;
 constexpr int kMostIdle = 3;  // ticks of a row that does not hold
-constexpr int kMostRounds = 12;
+constexpr int kMostRounds = 4;
 constexpr int kMostShorter = 4;
+constexpr double kSameWay = 0.8;  // cosine of two looks' ways
+constexpr double kMostRelaxed = 8.0, kLeastRelaxed = 0.4;
 constexpr double kNearlyWhole = 0.95;  // of a motion: shortened by less, it is not solved for again
 constexpr double kPart = 0.3;          // of a motion that leaves an overlap: along the hand
 
@@ -69,6 +71,7 @@ void SurfaceProxy::place(const Pose& X_WG) noexcept {
     least_ = 0.0;
     overlaps_ = false;
     X_WH_last_.reset();
+    gone_.setZero();
     phase_ = Phase::Idle;
 }
 
@@ -199,6 +202,15 @@ void SurfaceProxy::solve() noexcept {
     tick_.work += 20 + static_cast<int>(row_count_) + 8 * result.iterations;
 }
 
+/// How many times the rest of the way to go: where rows turn with the pose, each look leaves the same share of a rest,
+/// or the next rest is larger. Barzilai, Borwein 1988: of the change of the rest along the last look.
+double SurfaceProxy::relaxation() const noexcept {
+    const double square = gone_.squaredNorm();
+    if (square < kStill * kStill || std::abs(gone_.dot(u_)) < kSameWay * gone_.norm() * u_.norm()) return 1.0;
+    const double bent = gone_.dot(rest_before_ - u_) / square;
+    return 1.0 / std::clamp(bent, 1.0 / kMostRelaxed, 1.0 / kLeastRelaxed);
+}
+
 /// Where triangles cross: out along what faces them, and along the hand, no faster than kFastest.
 motion::Motion SurfaceProxy::wayOut() const noexcept {
     Vec3 out = Vec3::Zero();
@@ -216,20 +228,33 @@ motion::Motion SurfaceProxy::wayOut() const noexcept {
     return u;
 }
 
+bool SurfaceProxy::isHeld() const noexcept {
+    return std::any_of(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(row_count_),
+                       [](const ContactRow& row) { return row.push > 0.0; });
+}
+
 /// False if nothing is left to do in this tick.
 bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
+    if (X_WH_.p != X_WH.p || X_WH_.q.coeffs() != X_WH.q.coeffs()) gone_.setZero();
     X_WH_ = X_WH;
     refreshRows();
     if (tick_.looks == 0) adaptGap();
     ease_ = tick_.looks == 0 ? kEase : 0.0;
     wanted_ = motionTo(X_, X_WH_, settings_.metric_radius);
-    const double room = std::min(overlaps_ ? kFastest : trust_, most_in_tick_ - way_in_tick_);
-    if (!(room > kStill)) return false;
+    if (!(most_in_tick_ - way_in_tick_ > kStill)) return false;
     if (overlaps_) {
         wanted_ = wayOut();
         row_count_ = 0;
     }
     solve();
+    rest_ = u_;
+    if (const double times = overlaps_ ? 1.0 : relaxation(); times != 1.0) {
+        wanted_ += (times - 1.0) * u_;
+        solve();
+    }
+    const double most = isHeld() ? most_held_ : most_in_tick_, left = most - way_in_tick_;
+    if (left < kLeastLeft * most) return false;
+    const double room = std::min(overlaps_ ? kFastest : trust_, left);
     limited_ = false;
     const double length = u_.norm();
     limit(room);
@@ -365,6 +390,7 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
     X_WH_last_ = X_WH;
     trust_ = std::max({kLeastTrust, 1.5 * hand_way, std::min(2.0 * last_way_, kFastest)});
     most_in_tick_ = overlaps_ ? kFastest : std::max(kFastest, 1.5 * hand_way);
+    most_held_ = std::min(most_in_tick_, std::max(kFastestHeld, 2.0 * hand_way));
     way_in_tick_ = 0.0;
     if (phase_ == Phase::Idle) {
         ahead_.fill(0.0);

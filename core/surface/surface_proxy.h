@@ -52,6 +52,9 @@ struct SurfaceTick {
 /// Bernstein coefficient  n0·a0 - h0,  ½(n0·a1 + n1·a0 - h0 - h1),  n1·a1 - h1,  less e.
 /// A cluster's hull is proven from one number: any x within r of c has  n · Δx ≥ n · Δc - |Dᵀ n| r,  D = R1 - R0.
 ///
+/// Held by rows the proxy goes no faster than kFastestHeld, or twice as fast as the hand: past an edge it slides
+/// through several ticks. Where rows turn with the pose, a look goes farther than they say (relaxation()).
+///
 /// Limit cases: nothing near → the hand. One plane → the hand's projection onto it, one gap away. Where two sides leave
 /// less than 8 gaps, the gap shrinks to an eighth of what is there. Rounding: kWelded and 1e-10 m, which are 1/100 of
 /// the least gap.
@@ -81,8 +84,10 @@ public:
     /// How far the hand's pose lies beyond the row that it presses most [m], ≥ 0.
     double handDepth(const Pose& X_WH) const noexcept;
 
-    static constexpr double kSeen = 8e-6;      // [m]: farther pairs are not told apart
-    static constexpr double kLeastGap = 1e-7;  // [m]
+    static constexpr double kSeen = 8e-6;           // [m]: farther pairs are not told apart
+    static constexpr double kLeastGap = 1e-7;       // [m]
+    static constexpr double kFastest = 1e-3;        // of the proxy where the hand is slower [m/tick]
+    static constexpr double kFastestHeld = 1.5e-4;  // and where rows hold it [m/tick]
     static constexpr std::size_t kMostLooks = 16;
     static constexpr std::size_t kMostRows = 96;
 
@@ -127,6 +132,8 @@ private:
     void refreshRows() noexcept;
     void adaptGap() noexcept;
     void solve() noexcept;
+    double relaxation() const noexcept;
+    bool isHeld() const noexcept;
     motion::Motion wayOut() const noexcept;
     bool beginLook(const Pose& X_WH) noexcept;
     void measureNearer() noexcept;
@@ -158,11 +165,14 @@ private:
     std::optional<Pose> X_WH_last_;
 
     // Of the tick.
-    double trust_ = 0.0, most_in_tick_ = 0.0, way_in_tick_ = 0.0;  // [m]
+    double trust_ = 0.0, way_in_tick_ = 0.0;       // [m]
+    double most_in_tick_ = 0.0, most_held_ = 0.0;  // of the way, and where rows hold the pose [m]
 
     // Of the look that was begun.
     Phase phase_ = Phase::Idle;
     Pose X_WH_, X_next_;
+    motion::Motion rest_ = motion::Motion::Zero();  // what rows leave of the way to the hand, at the look's begin
+    motion::Motion rest_before_ = motion::Motion::Zero(), gone_ = motion::Motion::Zero();  // and the look before
     Placement P_next_;
     motion::Motion wanted_ = motion::Motion::Zero(), u_ = motion::Motion::Zero();
     Mat3 turn_ = Mat3::Zero();  // R1 - R0

@@ -86,6 +86,16 @@ Followed follow(const test::SurfaceCase& scene) {
     return seen;
 }
 
+/// Ticks of a case whose work may go on in the next one: what was counted when looks learnt to go farther where rows
+/// turn, and a quarter more. The mark is two.
+int mostSuspended(const test::SurfaceCase& scene) {
+    if (scene.name == "ring in ring") return 125;
+    if (scene.name == "scan on scan 10 mm") return 85;
+    if (scene.name == "scan on scan 100 mm") return 43;
+    if (scene.name == "gear in gear") return 13;
+    return 5;
+}
+
 class SurfaceOf : public testing::TestWithParam<test::SurfaceCase> {};
 
 TEST_P(SurfaceOf, TrianglesNeverMeetAndTheGapToldIsProven) {
@@ -103,6 +113,7 @@ TEST_P(SurfaceOf, TrianglesNeverMeetAndTheGapToldIsProven) {
     // Wanted is none: on bumpy meshes one tick in about fifty tells a gap that is proven, but too low.
     EXPECT_LE(20 * seen.loose, seen.measured) << seen.loose;
     EXPECT_GT(seen.measured, 0);
+    EXPECT_LE(seen.suspended, mostSuspended(GetParam()));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SurfaceOf, testing::ValuesIn(test::surfaceCases()), [](const auto& made) {
