@@ -390,7 +390,7 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
     X_WH_last_ = X_WH;
     trust_ = std::max({kLeastTrust, 1.5 * hand_way, std::min(2.0 * last_way_, kFastest)});
     most_in_tick_ = overlaps_ ? kFastest : std::max(kFastest, 1.5 * hand_way);
-    most_held_ = std::min(most_in_tick_, std::max(kFastestHeld, 2.0 * hand_way));
+    most_held_ = std::min(most_in_tick_, std::max(kFastestHeld, 1.5 * hand_way));
     way_in_tick_ = 0.0;
     if (phase_ == Phase::Idle) {
         ahead_.fill(0.0);
@@ -423,9 +423,25 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
             if (rows_[i].idle <= kMostIdle) rows_[kept++] = rows_[i];
         }
         row_count_ = kept;
+        if (isHeld()) refineLeast();
     }
     tell();
     return tick_;
+}
+
+/// A plane that proved enough need not be the nearest one: those that would be told are.
+void SurfaceProxy::refineLeast() noexcept {
+    for (int i = 0; i < kMostRefined; ++i) {
+        const auto end = near_.begin() + static_cast<std::ptrdiff_t>(near_count_);
+        const auto least =
+            std::min_element(near_.begin(), end, [](const NearPair& a, const NearPair& b) { return a.s < b.s; });
+        if (least == end || least->meets) return;
+        const NearestHulls now = nearestPoints(hulls(least->pair), P_, least->n);
+        tick_.work += 5 * now.looks;
+        if (!(now.separation > least->s + kTold)) return;
+        least->n = least->n_next = now.n;
+        least->s = now.separation;
+    }
 }
 
 void SurfaceProxy::tell() noexcept {

@@ -52,8 +52,9 @@ struct SurfaceTick {
 /// Bernstein coefficient  n0·a0 - h0,  ½(n0·a1 + n1·a0 - h0 - h1),  n1·a1 - h1,  less e.
 /// A cluster's hull is proven from one number: any x within r of c has  n · Δx ≥ n · Δc - |Dᵀ n| r,  D = R1 - R0.
 ///
-/// Held by rows the proxy goes no faster than kFastestHeld, or twice as fast as the hand: past an edge it slides
-/// through several ticks. Where rows turn with the pose, a look goes farther than they say (relaxation()).
+/// Held by rows the proxy goes no faster than kFastestHeld, or half as fast again as the hand: past an edge it
+/// slides through several ticks, and the force with it. Where rows turn with the pose, a look goes farther than they
+/// say (relaxation()).
 ///
 /// Limit cases: nothing near → the hand. One plane → the hand's projection onto it, one gap away. Where two sides leave
 /// less than 8 gaps, the gap shrinks to an eighth of what is there. Rounding: kWelded and 1e-10 m, which are 1/100 of
@@ -84,10 +85,10 @@ public:
     /// How far the hand's pose lies beyond the row that it presses most [m], ≥ 0.
     double handDepth(const Pose& X_WH) const noexcept;
 
-    static constexpr double kSeen = 8e-6;           // [m]: farther pairs are not told apart
-    static constexpr double kLeastGap = 1e-7;       // [m]
-    static constexpr double kFastest = 1e-3;        // of the proxy where the hand is slower [m/tick]
-    static constexpr double kFastestHeld = 1.5e-4;  // and where rows hold it [m/tick]
+    static constexpr double kSeen = 8e-6;         // [m]: farther pairs are not told apart
+    static constexpr double kLeastGap = 1e-7;     // [m]
+    static constexpr double kFastest = 1e-3;      // of the proxy where the hand is slower [m/tick]
+    static constexpr double kFastestHeld = 5e-5;  // and where rows hold it [m/tick]
     static constexpr std::size_t kMostLooks = 16;
     static constexpr std::size_t kMostRows = 96;
 
@@ -142,6 +143,7 @@ private:
     void bendRows() noexcept;
     bool tryAgain(bool violated) noexcept;
     bool dropsGhosts() noexcept;
+    void refineLeast() noexcept;
     void tell() noexcept;
 
     const ClusterTree* held_;

@@ -51,7 +51,7 @@ constexpr std::uint64_t kEveryEffect = 0x9ba5816cee9eacb6u;
 constexpr std::uint64_t kClosedForm = 0x26b3332b2dbec47au;
 
 /// On surfaces, without the low-pass that they do not have.
-constexpr std::uint64_t kSurface = 0x6a1a3c79267112beu;
+constexpr std::uint64_t kSurface = 0xf4f77b4c9b0e0a99u;
 
 constexpr const char* kParts = R"(
 [[part]]
