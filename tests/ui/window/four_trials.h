@@ -39,7 +39,7 @@ inline std::string fourTrials() {
     };
     drop("[[factor]]\nname = \"geometry\"", "# ---- What a trial asks for");
     drop("[[block]]\nname = \"practice\"", "[[block]]\nname = \"main\"");
-    drop("conditions = [{ method = \"penalty\" }, { geometry", "\n[[block]]\nname = \"geometry\"");
+    drop("# Twelve, each with the geometry", "\n[[block]]\nname = \"geometry\"");
     drop("[[block]]\nname = \"geometry\"", "# ---- What is asked");
     drop("[[analysis]]\noutcome = \"time_s\"\nblock = \"geometry\"", "# ---- What people agree to");
     swap("repetitions = 2", "repetitions = 1\non_invalid = \"repeat_at_block_end\"");
