@@ -43,6 +43,8 @@ const char* statusBitMeaning(TickStatus bit) {
             return "the condition displays no force (nothing to worry about)";
         case kSuspended:
             return "the tick's work was cut short and goes on in the next one: the proxy lags";
+        case kLedOut:
+            return "the held part was put where it overlaps: it is led out, and no contact counts";
     }
     return nullptr;
 }

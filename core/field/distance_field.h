@@ -53,6 +53,8 @@ struct FieldAccuracy {
     double depth = 0.0;               // the tolerance holds up to this far from the surface [m]; deeper: a tenth of φ
     double reach = 0.0;               // of the coarse grid beyond the band [m]; 0 = one part size
     std::size_t bytes = kFieldBytes;  // refinement ends before the bricks need more
+    // Told which level of cells is sampled, from 0, and how much of it is; by any thread, but one at a time.
+    std::function<void(int level, double share)> told = {};
 
     static constexpr std::size_t kFieldBytes = std::size_t{256} << 20;
 };

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 #include "core/base/single_precision.h"
 #include "core/field/distance_field_builder.h"
@@ -16,6 +18,7 @@ constexpr double kEverywhere = 1e30;        // [m]
 constexpr double kSinglePrecision = 1.001;  // more than what sampleMany errs by
 constexpr double kArithmetic = 0x1p-45;     // 128 roundings of a coordinate: far more than a query makes
 constexpr double kLargestStored = 65535.0;
+constexpr std::size_t kTellings = 100;  // of a level
 
 }  // namespace
 
@@ -132,7 +135,17 @@ void DistanceField::Builder::sampleLevel() {
     field.slacks_.resize(low.size());
     field.samples_.resize(low.size() * kBrickSamples);
     wrong.resize(low.size() - first);
-    geometry::parallelFor(wrong.size(), [&](std::size_t i) { sampleBrick(first + i); });
+    if (!accuracy.told) return geometry::parallelFor(wrong.size(), [&](std::size_t i) { sampleBrick(first + i); });
+    const std::size_t every = std::max<std::size_t>(wrong.size() / kTellings, 1);
+    std::atomic<std::size_t> done{0};
+    std::mutex telling;
+    geometry::parallelFor(wrong.size(), [&](std::size_t i) {
+        sampleBrick(first + i);
+        const std::size_t now = done.fetch_add(1) + 1;
+        if (now % every != 0) return;
+        const std::lock_guard lock(telling);
+        accuracy.told(level, static_cast<double>(now) / static_cast<double>(wrong.size()));
+    });
 }
 
 /// What the source says of a block, in one piece or point by point; then without the cells' centres, which are NaN.

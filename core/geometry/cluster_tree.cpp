@@ -100,6 +100,31 @@ struct ClusterTree::Builder {
         return static_cast<std::size_t>(cut - order.begin());
     }
 
+    /// Faces that share corners are one piece.
+    void findPieces() {
+        std::vector<std::uint32_t> above(mesh.vertices.size());  // towards the vertex that stands for the piece
+        std::iota(above.begin(), above.end(), 0u);
+        const auto first = [&](std::uint32_t v) {
+            while (above[v] != v) v = above[v] = above[above[v]];
+            return v;
+        };
+        for (const ConvexFace& face : mesh.faces)
+            for (const std::uint32_t v : face.corners) above[first(v)] = first(face.corners[0]);
+        std::vector<std::uint32_t> place(mesh.vertices.size(), 0);  // from 1 on
+        for (const ConvexFace& face : mesh.faces) {
+            const std::uint32_t piece = first(face.corners[0]);
+            if (place[piece] == 0) {
+                tree.pieces_.push_back({.corner = mesh.vertices[face.corners[0]], .box = {}});
+                place[piece] = static_cast<std::uint32_t>(tree.pieces_.size());
+            }
+            for (const std::uint32_t v : face.corners) tree.pieces_[place[piece] - 1].box.extend(mesh.vertices[v]);
+        }
+        std::stable_sort(tree.pieces_.begin(), tree.pieces_.end(), [](const SurfacePiece& a, const SurfacePiece& b) {
+            return a.box.size().norm() > b.box.size().norm();
+        });
+        tree.pieces_.resize(std::min(tree.pieces_.size(), kMostPieces));
+    }
+
     void build(std::uint32_t self, std::size_t first, std::size_t end) {
         summarise(tree.clusters_[self], first, end);
         if (end - first == 1) {
@@ -138,6 +163,18 @@ struct ClusterTree::Joiner {
             whole.clusters_[i == 0 ? self : before + i] = cluster;
         }
         whole.triangles_ += tree.triangles_;
+        const auto first = static_cast<std::uint32_t>(whole.faces_.size());
+        for (const std::uint32_t face : tree.faces_) whole.faces_.push_back(face == 0 ? self : before + face);
+        whole.bodies_.push_back(
+            {first, static_cast<std::uint32_t>(whole.faces_.size()), boxAt(tree.bodies_.front().box, R, part.X.p)});
+        for (const SurfacePiece& piece : tree.pieces_)
+            whole.pieces_.push_back({R * piece.corner + part.X.p, boxAt(piece.box, R, part.X.p)});
+    }
+
+    /// Around the box where it lies.
+    static Bounds boxAt(const Bounds& box, const Mat3& R, const Vec3& p) {
+        const Vec3 centre = R * (0.5 * (box.low + box.high)) + p, half = R.cwiseAbs() * (0.5 * box.size());
+        return {centre - half, centre + half};
     }
 
     void join(std::uint32_t self, std::span<const PlacedTree> parts) {
@@ -181,6 +218,10 @@ ClusterTree::ClusterTree(const TriangleMesh& mesh) : triangles_(mesh.triangles.s
     }
     clusters_.resize(1);
     builder.build(0, 0, builder.mesh.faces.size());
+    builder.findPieces();
+    for (std::uint32_t i = 0; i < clusters_.size(); ++i)
+        if (clusters_[i].isFace()) faces_.push_back(i);
+    bodies_.push_back({0, static_cast<std::uint32_t>(faces_.size()), box_});
 }
 
 ClusterTree::ClusterTree(std::span<const PlacedTree> trees) {

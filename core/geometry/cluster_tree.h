@@ -22,6 +22,18 @@ struct Cluster {
 
 inline constexpr std::uint32_t kLanes = 4;
 
+/// A surface, or a part of one that shares no corner with the rest. Box and corner in the frame of the tree.
+struct SurfacePiece {
+    Vec3 corner = Vec3::Zero();  // one of its own
+    Bounds box;
+};
+
+/// One of the meshes of a tree: its faces are ClusterTree::faces()[first … end).
+struct SurfaceBody {
+    std::uint32_t first = 0, end = 0;
+    Bounds box;
+};
+
 class ClusterTree;
 
 /// A tree and where its part lies.
@@ -51,6 +63,13 @@ public:
     const double* y() const noexcept { return y_.data(); }
     const double* z() const noexcept { return z_.data(); }
 
+    /// The kMostPieces largest ones of each mesh.
+    std::span<const SurfacePiece> pieces() const noexcept { return pieces_; }
+    std::span<const SurfaceBody> bodies() const noexcept { return bodies_; }
+    /// Clusters that are faces, body by body. The corners of such a one lie in order around it.
+    std::span<const std::uint32_t> faces() const noexcept { return faces_; }
+    static constexpr std::size_t kMostPieces = 16;
+
     const Bounds& box() const noexcept { return box_; }
     /// The farthest vertex from the origin of the part frame [m].
     double reach() const noexcept { return reach_; }
@@ -64,6 +83,9 @@ private:
 
     std::vector<Cluster> clusters_;
     std::vector<double> x_, y_, z_;  // corners
+    std::vector<SurfacePiece> pieces_;
+    std::vector<SurfaceBody> bodies_;
+    std::vector<std::uint32_t> faces_;
     Bounds box_;
     double reach_ = 0.0;
     std::size_t triangles_ = 0;

@@ -160,9 +160,17 @@ double largestCell(const field::DistanceSource& source, double cell) {
     return cell;
 }
 
-Result<field::DistanceField> buildField(const Part& part, const PartNeeds& needs) {
+void tell(BuildStore* store, const Part& part, const std::string& what, double share = 0.0) {
+    if (store != nullptr) store->building({part.name, what, share});
+}
+
+Result<field::DistanceField> buildField(const Part& part, const PartNeeds& needs, BuildStore* store) {
+    tell(store, part, "distance field");
     field::DistanceSource source = exactSource(part);
     field::FieldAccuracy accuracy;
+    accuracy.told = [&](int level, double share) {
+        tell(store, part, "distance field, level " + std::to_string(level + 1), share);
+    };
     if (needs.cell > 0.0) {
         accuracy.largest_cell = largestCell(source, needs.cell);
         return field::DistanceField::build(source, needs.cell, kUniformBandCells * needs.cell, accuracy);
@@ -212,7 +220,7 @@ auto loaded(BuildStore* store, const std::string& key, Part& part, const Read& f
 Result<field::DistanceField> fieldOf(Part& part, const PartNeeds& needs, BuildStore* store) {
     const std::string key = storeKey("field", part, {needs.tolerance, needs.cell, needs.depth});
     if (auto field = loaded(store, key, part, &field::DistanceField::fromBytes)) return std::move(*field);
-    auto field = buildField(part, needs);
+    auto field = buildField(part, needs, store);
     if (field && store != nullptr) store->keep(storeName(key), sealed(key, field->toBytes()));
     return field;
 }
@@ -228,6 +236,7 @@ geometry::TriangleMesh surfaceTriangles(const Part& part) {
 shell::PointShell shellOf(Part& part, const PartNeeds& needs, BuildStore* store) {
     const std::string key = storeKey("shell", part, {needs.spacing});
     if (auto shell = loaded(store, key, part, &shell::shellFrom)) return std::move(*shell);
+    tell(store, part, "points");
     shell::PointShell shell = shell::samplePoints(part.mesh, needs.spacing);
     if (store != nullptr) store->keep(storeName(key), sealed(key, toBytes(shell)));
     return shell;
@@ -249,6 +258,7 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore*
         part.report.format = shape::kindName(*shape);
     } else {
         const auto& file = std::get<MeshFile>(spec.geometry);
+        tell(store, part, "mesh");
         auto imported = importMeshFile(file, store);
         if (!imported) return imported.errors();
         part.mesh = std::move(imported->mesh);
@@ -269,6 +279,7 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore*
             part.report.notes.push_back("The sheet is felt " + inMillimetres(part.field->sheetOffset()) +
                                         " in front of its surface, on both sides.");
     }
+    if (needs.clusters) tell(store, part, "triangles");
     if (needs.clusters) part.clusters = std::make_shared<const geometry::ClusterTree>(surfaceTriangles(part));
     if (needs.shell) {
         part.shell.emplace(shellOf(part, needs, store), part.mesh);

@@ -17,6 +17,9 @@ public:
     explicit TimedStore(BuildStore* store) : store_(store) {}
     std::optional<std::string> load(const std::string& name) override;
     void keep(const std::string& name, std::string_view bytes) override;
+    void building(const BuildStep& step) override {
+        if (store_ != nullptr) store_->building(step);
+    }
     Result<importer::ImportedMesh> importMesh(const std::string& path, double metres_per_unit) override;
     /// Wall time of all that was taken or kept [s].
     double seconds() const;

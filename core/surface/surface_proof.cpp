@@ -347,6 +347,9 @@ void SurfaceProxy::accept() noexcept {
         overlaps_ = overlaps_ || near.meets;
         ++i;
     }
+    if (!overlaps_) return;
+    asks_ = true;
+    enclosure_.restart();
 }
 
 }  // namespace passung::surface

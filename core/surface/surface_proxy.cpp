@@ -55,7 +55,8 @@ SurfaceProxy::SurfaceProxy(const ClusterTree& held, const ClusterTree& obstacles
       near_(forest_.capacity()),
       rows_(kMostRows),
       manifold_(kMostRows),
-      gap_(settings.gap) {
+      gap_(settings.gap),
+      enclosure_(held, obstacles) {
     place({});
 }
 
@@ -70,6 +71,9 @@ void SurfaceProxy::place(const Pose& X_WG) noexcept {
     usual_.fill(0.0);
     least_ = 0.0;
     overlaps_ = false;
+    enclosure_.restart();
+    asks_ = true;
+    left_to_lead_ = 0.0;
     X_WH_last_.reset();
     gone_.setZero();
     phase_ = Phase::Idle;
@@ -79,8 +83,44 @@ void SurfaceProxy::prepare() {
     budget_ = std::numeric_limits<int>::max();
     tick_ = {};
     settle();
+    knowsItsSide();
     budget_ = settings_.budget;
     tell();
+}
+
+/// After triangles crossed, or at a new place: finds out whether something lies within the other part, once none cross
+/// any more. False: the budget ended.
+bool SurfaceProxy::knowsItsSide() noexcept {
+    if (!asks_) return true;
+    overlaps_ = false;
+    for (std::size_t i = 0; i < near_count_; ++i) overlaps_ = overlaps_ || near_[i].meets;
+    if (overlaps_) return true;
+    const Vec3 hand = X_WH_last_ ? Vec3(X_WH_last_->p - X_.p) : Vec3::Zero();
+    if (!enclosure_.advance(P_, hand, tick_.work, budget_)) return false;
+    asks_ = false;
+    if (!enclosure_.encloses()) return true;
+    left_to_lead_ = enclosure_.wayOut().norm();
+    lead_ = enclosure_.wayOut() / left_to_lead_;
+    row_count_ = 0;
+    return true;
+}
+
+/// A tick on the way out of the other part. At its end all is looked at anew.
+const SurfaceTick& SurfaceProxy::lead() noexcept {
+    const double step = std::min(left_to_lead_, kFastest);
+    left_to_lead_ -= step;
+    X_.p += step * lead_;
+    P_ = Placement(X_);
+    chain_[chain_count_++] = X_;
+    tick_.X_WG = X_;
+    tick_.meets = true;
+    tick_.looks = 1;
+    ++tick_.work;
+    if (left_to_lead_ > 0.0) return tick_;
+    const std::optional<Pose> X_WH = X_WH_last_;
+    place(X_);
+    X_WH_last_ = X_WH;
+    return tick_;
 }
 
 double SurfaceProxy::wayBetween(const Placement& from, const Placement& to) const noexcept {
@@ -388,15 +428,18 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
     chain_count_ = 0;
     const double hand_way = X_WH_last_ ? wayBetween(Placement(*X_WH_last_), Placement(X_WH)) : 0.0;
     X_WH_last_ = X_WH;
+    if (left_to_lead_ > 0.0) return lead();
     trust_ = std::max({kLeastTrust, 1.5 * hand_way, std::min(2.0 * last_way_, kFastest)});
     most_in_tick_ = overlaps_ ? kFastest : std::max(kFastest, 1.5 * hand_way);
     most_held_ = std::min(most_in_tick_, std::max(kFastestHeld, 1.5 * hand_way));
     way_in_tick_ = 0.0;
     if (phase_ == Phase::Idle) {
         ahead_.fill(0.0);
-        if (!settle()) tick_.suspended = true;
+        if (!settle() || !knowsItsSide()) tick_.suspended = true;
+        if (left_to_lead_ > 0.0) return lead();
     }
     while (!tick_.suspended && static_cast<std::size_t>(tick_.looks) < kMostLooks) {
+        if (phase_ == Phase::Idle && asks_ && !overlaps_) break;
         if (phase_ == Phase::Idle && !beginLook(X_WH)) break;
         if (phase_ == Phase::Waking && !wakeAll()) tick_.suspended = true;
         if (phase_ != Phase::Checking) continue;

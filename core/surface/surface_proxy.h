@@ -9,6 +9,7 @@
 #include "core/contact/contact_query.h"
 #include "core/motion/constrained_motion.h"
 #include "core/surface/contact_row.h"
+#include "core/surface/enclosure.h"
 #include "core/surface/pair_forest.h"
 
 namespace passung::surface {
@@ -24,7 +25,7 @@ struct SurfaceTick {
     Pose X_WG;
     double gap = 0.0;        // proven: no two triangles are nearer at X_WG [m]; at most SurfaceProxy::kSeen
     bool suspended = false;  // the budget ended: what was begun goes on in the next tick
-    bool meets = false;      // triangles cross, as at a start in overlap: they are being set apart
+    bool meets = false;      // the parts overlap, as at a start in overlap: they are being set apart
     bool stuck = false;      // no motion was found within the bounds on rounds
     int looks = 0;
     int rounds = 0;  // motions solved for
@@ -55,6 +56,10 @@ struct SurfaceTick {
 /// Held by rows the proxy goes no faster than kFastestHeld, or half as fast again as the hand: past an edge it
 /// slides through several ticks, and the force with it. Where rows turn with the pose, a look goes farther than they
 /// say (relaxation()).
+///
+/// A start in overlap: where triangles cross, out along what faces them and along the hand, until none do. Then, and at
+/// each place, it is asked whether something lies wholly within the other part (enclosure.h): if so, the held part goes
+/// the way out that was found, in a straight line. Both at kFastest at most; no face counts as a contact meanwhile.
 ///
 /// Limit cases: nothing near → the hand. One plane → the hand's projection onto it, one gap away. Where two sides leave
 /// less than 8 gaps, the gap shrinks to an eighth of what is there. Rounding: kWelded and 1e-10 m, which are 1/100 of
@@ -136,6 +141,8 @@ private:
     double relaxation() const noexcept;
     bool isHeld() const noexcept;
     motion::Motion wayOut() const noexcept;
+    bool knowsItsSide() noexcept;
+    const SurfaceTick& lead() noexcept;
     bool beginLook(const Pose& X_WH) noexcept;
     void measureNearer() noexcept;
     double shareKnown() const noexcept;
@@ -164,6 +171,10 @@ private:
     double gap_, least_ = 0.0;  // held; the least proven at X_ [m]
     double last_way_ = 0.0;     // in the last tick [m]
     bool overlaps_ = false;
+    EnclosureSearch enclosure_;
+    bool asks_ = true;           // whether something lies wholly within the other part
+    Vec3 lead_ = Vec3::Zero();   // the way out of it, unit, world
+    double left_to_lead_ = 0.0;  // [m]
     std::optional<Pose> X_WH_last_;
 
     // Of the tick.

@@ -50,6 +50,7 @@ void followOnSurface(const TickModel& model, const HandSample& hand, Proxy& prox
     report.rows_taken = std::max(report.rows_taken, static_cast<std::uint32_t>(now.rows));
     report.nodes_visited += static_cast<std::uint32_t>(now.work);
     if (now.suspended) report.status |= kSuspended;
+    if (now.meets) report.status |= kLedOut;
     if (now.stuck) report.status |= kIterationLimit;
     noteRows(model, *follow.surface, pushes);
 }

@@ -19,7 +19,7 @@ namespace passung::tick {
 /// pose: the proxy lags (kSuspended), nothing overlaps.
 /// Limit cases: nothing near → G = H. A plane → G is H's projection onto it, one gap away.
 /// Invariant: no triangle of the held part crosses one of an obstacle, at no pose of the way, but for what a start
-/// overlaps: that is left at 1 m/s.
+/// overlaps, wholly or in part: that is left at 1 m/s (kLedOut).
 inline constexpr int kSurfaceBudget = 20000;  // units of about 25 ns
 inline constexpr double kSurfaceGap = 1e-6;   // [m]
 

@@ -109,10 +109,11 @@ const Node* Node::find(std::string_view key) const {
 Node* Node::find(std::string_view key) { return const_cast<Node*>(std::as_const(*this).find(key)); }
 
 std::optional<FileKind> kindOf(const Node& document) {
-    if (document.find("study") != nullptr || document.find("passung") != nullptr) return FileKind::Study;
+    if (document.find("study") != nullptr) return FileKind::Study;
     for (const char* key : {"contact", "device", "registration", "start_gate", "effects"})
         if (document.find(key) != nullptr) return FileKind::Scene;
     if (document.find("part") != nullptr) return FileKind::Part;
+    if (document.find("passung") != nullptr) return FileKind::Study;  // whose [study] is missing
     return std::nullopt;
 }
 

@@ -53,13 +53,13 @@ LoopApparatus::Run::Run(BuiltScenes built, HeldDevice device, const plan::Condit
       cycle(scenes.turns, *held.device, ring, condition.shown == plan::ShownPose::Proxy, screens, &cues, timed) {}
 
 LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock,
-                             Performer* performer, const ImportLimits& import_limits)
+                             Performer* performer, const ImportLimits& import_limits, BuildWatch told)
     : described_(performer == nullptr ? simulated::describe(device) : performer->describe(device)),
       description_(described_),
       person_(person),
       clock_(clock),
       performer_(performer),
-      store_(openBuilds(import_limits)) {}
+      store_(openBuilds(import_limits, std::move(told))) {}
 
 LoopApparatus::~LoopApparatus() = default;
 

@@ -25,7 +25,7 @@ enum class Clock { Virtual, RealTime };
 class LoopApparatus final : public session::Apparatus {
 public:
     LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock,
-                  Performer* performer = nullptr, const ImportLimits& import_limits = {});
+                  Performer* performer = nullptr, const ImportLimits& import_limits = {}, BuildWatch told = {});
     ~LoopApparatus() override;
 
     /// The next person takes the device: as newly made, but for what is kept of parts. Between sessions.

@@ -158,7 +158,8 @@ private:
         if (apparatus_)
             apparatus_->passTo(person);
         else
-            apparatus_.emplace(*device, person, options_.clock, options_.performer, options_.import_limits);
+            apparatus_.emplace(*device, person, options_.clock, options_.performer, options_.import_limits,
+                               options_.told);
         return *apparatus_;
     }
 
@@ -361,7 +362,7 @@ Result<RunEnd> runSessions(const plan::StudyPlan& draft, RunOptions options, con
     // A calibration that fails must leave nothing behind: neither a new database nor the protocol in an old one.
     std::vector<store::AccuracyRow> measured;
     const auto measure = [&]() -> Result<Done> {
-        const auto builds = openBuilds(options.import_limits);
+        const auto builds = openBuilds(options.import_limits, options.told);
         const auto report = [&](const std::string& step, double share) {
             listener(session::MeasuringAccuracy{step, share});
         };
@@ -393,7 +394,7 @@ Result<RunEnd> runSessions(const plan::StudyPlan& draft, RunOptions options, con
     const auto kept = opened.store->accuracy(*sha256);
     if (!kept) return kept.errors();
     if (options.clock == Clock::RealTime && options.warns && !kept->empty()) {
-        const auto builds = openBuilds(options.import_limits);
+        const auto builds = openBuilds(options.import_limits, options.told);
         const auto slow = tooSlowHere(draft, *kept, builds.get());
         if (!slow) return slow.errors();
         for (const std::string& what : *slow) listener(session::Warned{what});

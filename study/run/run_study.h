@@ -34,6 +34,7 @@ struct RunOptions {
     Performer* performer = nullptr;                   // who takes part or watches; null: nobody
     store::UtcClock::Now now = unixMilliseconds;      // in real time; virtual time has none
     ImportLimits import_limits;                       // of every mesh file
+    BuildWatch told;                                  // what of a part is being built
     StudyLog* log = nullptr;                          // of the database; null: none is kept
     bool warns = false;  // looks for what is unusual and tells of it (session::Warned); else nothing is looked for
 };

@@ -183,18 +183,18 @@ Row rowOf(const char* method, const std::string& settings, bool ours, std::size_
     return {.group = kForceGroup, .method = method, .settings = settings, .ours = ours, .samples = samples};
 }
 
-/// Both methods on the device path of `records`, as the hard cases run and judge a path.
-Result<Row> overlapRow(const std::string& settings, scene::SceneSpec scene, const std::vector<TickRecord>& records) {
+/// A god object and a penalty on the device path of `records`, as the hard cases run and judge a path.
+Result<Row> overlapRow(const std::string& settings, const scene::SceneSpec& god_object,
+                       const scene::SceneSpec& by_penalty, const std::vector<TickRecord>& records) {
     const hard::Drive drive = [&](std::int64_t tick, const tick::TickOutput*) {
         return tick::readingOf(records[static_cast<std::size_t>(tick)]);
     };
-    const auto deepest = [&](scene::ContactMethod method) -> Result<double> {
-        scene.contact.method = method;
+    const auto deepest = [&](const scene::SceneSpec& scene) -> Result<double> {
         const auto run = hard::runScene(scene, drive, static_cast<std::int64_t>(records.size()));
         if (!run) return run.errors();
         return kUm * hard::deepestOverlap(*run);
     };
-    const auto ours = deepest(scene::ContactMethod::GodObject), penalty = deepest(scene::ContactMethod::Penalty);
+    const auto ours = deepest(god_object), penalty = deepest(by_penalty);
     if (!ours) return ours.errors();
     if (!penalty) return penalty.errors();
     Row row = rowOf(kOverlapMethod, fmt::format("{}; {:.3g} um : {:.4g} um", settings, *ours, *penalty), true,
@@ -203,6 +203,19 @@ Result<Row> overlapRow(const std::string& settings, scene::SceneSpec scene, cons
     row.figure = *penalty > 0.0 ? *ours / *penalty : std::numeric_limits<double>::infinity();
     row.figure_mark = kOverlapMark;
     return row;
+}
+
+/// The condition that differs from another one in how contact is computed alone, by the method; the first of those.
+const plan::Condition* counterpart(const plan::StudyPlan& plan, const plan::Condition& condition,
+                                   scene::ContactMethod method) {
+    for (const plan::Condition& other : plan.conditions) {
+        bool same = other.scene.contact.method == method;
+        for (std::size_t f = 0; f < plan.factors.size(); ++f)
+            same = same && (plan.factors[f].name == "method" || plan.factors[f].name == "geometry" ||
+                            other.levels[f] == condition.levels[f]);
+        if (same) return &other;
+    }
+    return nullptr;
 }
 
 }  // namespace
@@ -218,12 +231,23 @@ Result<std::vector<Row>> forceRows(const std::string& protocol, const Extent& ex
     const auto store = run::openDiskStore();
     scene::PartCache parts(store.get());
     const std::int64_t ticks = extent.few_settings ? kFewTicks : kTicks;
-    for (plan::Condition condition : plan->conditions) {
-        if (condition.scene.contact.method != scene::ContactMethod::Penalty) continue;
-        std::string settings = condition.name;
-        if (const auto at = settings.find("penalty/"); at != std::string::npos) settings.erase(at, 8);
+    for (const plan::Condition& by_penalty : plan->conditions) {
+        if (by_penalty.scene.contact.method != scene::ContactMethod::Penalty) continue;
+        const plan::Condition* shipped = counterpart(*plan, by_penalty, scene::ContactMethod::GodObject);
+        if (shipped == nullptr) return Error{.message = "has no god object beside this one", .value = by_penalty.name};
+        std::string settings = by_penalty.name;
+        for (const std::string part : {"penalty/", "/field"})
+            if (const auto at = settings.find(part); at != std::string::npos) settings.erase(at, part.size());
+        const auto trial = perform(*plan, *shipped, ticks);
+        if (!trial) return trial.errors();
+        const auto as_shipped =
+            overlapRow(settings + ", as the study has it", shipped->scene, by_penalty.scene, *trial);
+        if (!as_shipped) return as_shipped.errors();
+        rows.push_back(*as_shipped);
+        // All other rows are of god objects on fields, with the cells that the penalty has.
+        plan::Condition condition = by_penalty;
         condition.scene.contact.method = scene::ContactMethod::GodObject;
-        condition.scene.contact.geometry = scene::Geometry::Field;  // of these the rows are
+        condition.scene.contact.geometry = scene::Geometry::Field;
         const auto records = perform(*plan, condition, ticks);
         if (!records) return records.errors();
         const auto scene = scene::buildScene(condition.scene, parts);
@@ -244,11 +268,11 @@ Result<std::vector<Row>> forceRows(const std::string& protocol, const Extent& ex
         fine.contact.cell = 0.0;
         fine.contact.tolerance = kFineTolerance;
         fine.contact.two_way = true;
-        for (const auto& [spec, how] : {std::pair{condition.scene, "as the study has it"}, std::pair{fine, kFine}}) {
-            const auto overlap = overlapRow(settings + ", " + how, spec, *records);
-            if (!overlap) return overlap.errors();
-            rows.push_back(*overlap);
-        }
+        scene::SceneSpec fine_penalty = fine;
+        fine_penalty.contact.method = scene::ContactMethod::Penalty;
+        const auto overlap = overlapRow(settings + ", " + kFine, fine, fine_penalty, *records);
+        if (!overlap) return overlap.errors();
+        rows.push_back(*overlap);
         if (extent.few_settings) break;
     }
     return rows;

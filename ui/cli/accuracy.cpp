@@ -73,6 +73,7 @@ int printDisagreements(const truth::AccuracyResult& result) {
 
 int accuracy(const AccuracyArguments& options) {
     if (!options.trajectory.empty()) return tickAccuracy(options);
+    if (options.shell.empty()) return studyAccuracy(options);
     const auto field = partArgument(options.field, options.field_unit.empty() ? options.unit : options.field_unit);
     if (!field) return fail(field.errors());
     const auto shell = partArgument(options.shell, options.shell_unit.empty() ? options.unit : options.shell_unit);

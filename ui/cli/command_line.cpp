@@ -407,20 +407,26 @@ private:
     void addAccuracyCommand(const CLI::Validator& units) {
         auto* sub = command("accuracy", "measure error against truth over time, of queries or of a scene's tick",
                             accuracy_, accuracy);
-        sub->add_option("FIELD", accuracy_.field, "watertight mesh or part.toml; with --trajectory the scene (.toml)")
+        sub->add_option(
+               "FIELD", accuracy_.field,
+               "watertight mesh or part.toml; with --trajectory the scene (.toml); alone a study (.toml), whose "
+               "measured front is shown")
             ->required();
         addImport(sub, accuracy_.import_limits);
         auto* shell = sub->add_option("SHELL", accuracy_.shell, "mesh or part.toml; left out with --trajectory");
-        sub->add_option("--out", accuracy_.out,
-                        "folder for accuracy.csv, accuracy.svg, codebook.csv, without --trajectory poses.csv")
-            ->required();
+        auto* out =
+            sub->add_option("--out", accuracy_.out,
+                            "folder for accuracy.csv, accuracy.svg, codebook.csv, without --trajectory poses.csv");
         auto* trajectory =
             sub->add_option("--trajectory", accuracy_.trajectory,
                             "CSV of poses of the held part, as for simulate: the scene's tick is measured "
                             "along it, in every way to render it")
                 ->excludes(shell);
-        sub->parse_complete_callback([this] {
-            if (accuracy_.trajectory.empty() && accuracy_.shell.empty()) throw CLI::RequiredError("SHELL");
+        addStudyOptions(sub, {shell, out, trajectory});
+        sub->parse_complete_callback([this, out] {
+            const bool study = accuracy_.trajectory.empty() && accuracy_.shell.empty();
+            if (study && (out->count() > 0 || !accuracy_.field.ends_with(".toml"))) throw CLI::RequiredError("SHELL");
+            if (!study && out->count() == 0) throw CLI::RequiredError("--out");
         });
         addAccuracyLevels(sub);
         addPairOptions(sub, trajectory, units);
@@ -428,6 +434,24 @@ private:
         sub->add_option("--repetitions", accuracy_.repetitions,
                         "repetitions, the fastest of which is the time of a pose or tick; default 5")
             ->check(wholeIntFrom(1));
+    }
+
+    /// Of a study's measured front alone; `others` are of all else.
+    void addStudyOptions(CLI::App* sub, const std::vector<CLI::Option*>& others) {
+        auto* measure = sub->add_flag("--measure", accuracy_.measure,
+                                      "measure the front of the study anew and keep it beside the study, which takes "
+                                      "minutes");
+        auto* conditions = sub->add_option("--conditions", accuracy_.conditions,
+                                           "names of the conditions that are measured; default: the first whose trials "
+                                           "the program times")
+                               ->delimiter(',')
+                               ->expected(1, -1)
+                               ->needs(measure);
+        auto* commit =
+            sub->add_option("--commit", accuracy_.commit, "commit of the program's sources, to be kept with it")
+                ->needs(measure);
+        for (CLI::Option* option : {measure, conditions, commit})
+            for (CLI::Option* other : others) option->excludes(other);
     }
 
     static CLI::Option* list(CLI::Option* option) { return option->delimiter(',')->expected(1, -1); }

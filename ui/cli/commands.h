@@ -183,9 +183,12 @@ struct SimulateArguments {
 int simulate(const SimulateArguments& options);
 
 struct AccuracyArguments {
-    std::string field, shell, out;  // with a trajectory: field is the scene, shell is empty
-    std::string poses;              // empty: along generated contact paths
-    std::string trajectory;         // of the held part; empty: queries of a pair are measured, not ticks of a scene
+    std::string field, shell, out;  // with a trajectory: field is the scene, shell is empty; a study alone: neither
+    bool measure = false;           // of a study: anew, beside it; else what is there is shown
+    std::vector<std::string> conditions;  // of it; empty: the first that the program times
+    std::string commit;                   // written into the file
+    std::string poses;                    // empty: along generated contact paths
+    std::string trajectory;  // of the held part; empty: queries of a pair are measured, not ticks of a scene
     int paths = 12;
     std::uint64_t seed = 1;
     std::vector<double> tolerances_um;  // empty: 100, 50, 20, 10; of ticks twice the scene's and its own
@@ -202,6 +205,7 @@ struct AccuracyArguments {
 };
 int accuracy(const AccuracyArguments& options);
 int tickAccuracy(const AccuracyArguments& options);
+int studyAccuracy(const AccuracyArguments& options);
 
 struct BenchArguments {
     std::string out, filter;

@@ -137,6 +137,15 @@ void ProgressLine::show(const std::string& text) {
     shown_ = text.size();
 }
 
+std::string buildWords(const scene::BuildStep& step) {
+    const std::string words = "building " + step.part + ": " + step.what;
+    return step.share > 0.0 ? progressBar(words, step.share) : words;
+}
+
+run::BuildWatch showBuilds(ProgressLine& line) {
+    return [&line](const scene::BuildStep& step) { line.show(buildWords(step)); };
+}
+
 bool isCommand(const std::string& word, const std::vector<std::string>& commands) {
     const std::vector<std::string_view> names(commands.begin(), commands.end());
     if (std::find(names.begin(), names.end(), word) != names.end()) return true;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "study/run/files/builds.h"
 #include "study/store/rows/rows.h"
 
 namespace passung::cli {
@@ -55,6 +56,12 @@ private:
     bool terminal_;
     std::size_t shown_ = 0;
 };
+
+/// "building plate: distance field, level 2".
+std::string buildWords(const scene::BuildStep& step);
+
+/// Shows that on the line, which outlives it.
+run::BuildWatch showBuilds(ProgressLine& line);
 
 /// Is the program's first word one of its commands? If not, says which may be meant and which there are.
 bool isCommand(const std::string& word, const std::vector<std::string>& commands);

@@ -46,8 +46,9 @@ void printShapes(const scene::SceneSpec& spec) {
     }
 }
 
-Result<Done> printStages(const scene::SceneSpec& spec, scene::PartCache& cache) {
+Result<Done> printStages(const scene::SceneSpec& spec, scene::PartCache& cache, ProgressLine& progress) {
     const auto scene = scene::buildScene(spec, cache);
+    progress.show("");
     if (!scene) return scene.errors();
     printShapes(spec);
     const scene::GeometryChoice choice = scene::geometryOf(spec);
@@ -142,14 +143,14 @@ void explainAccuracy(const std::string& database, std::span<const store::Accurac
                run::describeAccuracy(rows));
 }
 
-Result<Done> explainEffects(const plan::StudyPlan& plan, scene::PartCache& cache) {
+Result<Done> explainEffects(const plan::StudyPlan& plan, scene::PartCache& cache, ProgressLine& progress) {
     fmt::print("\nEffects, their cost measured on this machine in sliding contact\n");
     for (const auto& conditions : run::costGroups(plan)) {
         fmt::print("\n  conditions");
         for (const auto* condition : conditions)
             fmt::print(" {}{}", condition->name, condition == conditions.back() ? "" : ",");
         fmt::print("\n");
-        if (auto done = printStages(conditions.front()->scene, cache); !done) return done;
+        if (auto done = printStages(conditions.front()->scene, cache, progress); !done) return done;
     }
     return Done{};
 }
@@ -157,7 +158,8 @@ Result<Done> explainEffects(const plan::StudyPlan& plan, scene::PartCache& cache
 }  // namespace
 
 int explain(const ExplainArguments& options) {
-    const auto store = run::openBuilds(options.import_limits);
+    ProgressLine progress;
+    const auto store = run::openBuilds(options.import_limits, showBuilds(progress));
     scene::PartCache cache(store.get());
     const auto is_study = isStudy(options.file);
     if (!is_study) return fail(is_study.errors());
@@ -166,10 +168,12 @@ int explain(const ExplainArguments& options) {
             return fail({{"a scene has no orders: --orders is for study files", options.file}});
         const auto text = readFile(options.file);
         if (!text) return fail(text.errors());
+        progress.show("reading " + options.file);
         const auto spec = run::readSceneOnDevice(*text, options.file, options.import_limits);
+        progress.show("");
         if (!spec) return fail(spec.errors());
         warn(options.file, spec->warnings);
-        const auto done = printStages(spec->scene, cache);
+        const auto done = printStages(spec->scene, cache, progress);
         if (const auto* device = run::deviceNamed(spec->device, run::knownDevices())) {
             printStabilityHead(device->name.size());
             printStability(device->name, device->name.size(), *device, spec->scene);
@@ -177,7 +181,9 @@ int explain(const ExplainArguments& options) {
         }
         return done ? 0 : fail(done.errors());
     }
+    progress.show("reading " + options.file);
     const auto draft = run::readProtocol(options.file, options.import_limits);
+    progress.show("");
     if (!draft) return fail(draft.errors());
     const int participants = options.participants > 0 ? options.participants : draft->participants;
     if (options.orders == "csv") {
@@ -196,7 +202,7 @@ int explain(const ExplainArguments& options) {
     explainStability(**plan,
                      options.database.empty() ? run::knownDevices() : run::devicesAsKept(kept->stable_stiffness));
     if (run::asksForAccuracy(*draft)) explainAccuracy(options.database, kept->accuracy);
-    const auto done = explainEffects(**plan, cache);
+    const auto done = explainEffects(**plan, cache, progress);
     return done ? 0 : fail(done.errors());
 }
 

@@ -28,10 +28,10 @@ constexpr const char* kResultColumns =
     "tested,query_us";
 
 Result<scene::Part> build(const std::string& path, const std::string& unit, const scene::PartNeeds& needs,
-                          const run::ImportLimits& limits) {
+                          const run::ImportLimits& limits, ProgressLine& progress) {
     auto spec = partArgument(path, unit);
     if (!spec) return spec.errors();
-    const auto store = run::openBuilds(limits);
+    const auto store = run::openBuilds(limits, showBuilds(progress));
     auto part = scene::buildPart(*spec, needs, store.get());
     if (!part) {
         Errors errors = part.errors();
@@ -139,11 +139,11 @@ int query(const QueryArguments& options) {
     ProgressLine progress;
     progress.show("building " + options.field);
     const auto field = build(options.field, options.field_unit.empty() ? options.unit : options.field_unit, field_needs,
-                             options.import_limits);
+                             options.import_limits, progress);
     if (!field) return fail(field.errors());
     progress.show("building " + options.shell);
     const auto shell = build(options.shell, options.shell_unit.empty() ? options.unit : options.shell_unit, shell_needs,
-                             options.import_limits);
+                             options.import_limits, progress);
     if (!shell) return fail(shell.errors());
 
     query::PartQueryRequest request;

@@ -84,6 +84,10 @@ public:
             if (trial.succeeded()) count_.succeeded.insert(resumed.agenda.trial(trial.place).trial_index);
     }
     void operator()(const session::SessionView&) {}
+    /// Told by the run's own thread and by those that build for it meanwhile.
+    void operator()(const scene::BuildStep& step) {
+        progress_.show((participant_.empty() ? "" : participant_ + ": ") + buildWords(step));
+    }
     void operator()(const session::AttemptEnded& ended) {
         if (acknowledge_fd_ >= 0) acknowledge(acknowledge_fd_, ended);
         count_.finished = ended.finished;
@@ -161,6 +165,7 @@ int tell(const std::string& study, run::RunOptions what, int acknowledge_fd, con
     what.log = &log;
     what.warns = true;
     RunTeller teller(study, what.database, acknowledge_fd);
+    what.told = [&teller](const scene::BuildStep& step) { teller(step); };
     const auto end = go(what, [&teller](const session::SessionEvent& event) { std::visit(teller, event); });
     if (!end) return fail(end.errors());
     if (*end == run::RunEnd::Interrupted) return fail({{.message = teller.interruption(), .file = what.database}});
@@ -176,7 +181,10 @@ int tell(const std::string& study, run::RunOptions what, int acknowledge_fd, con
 }  // namespace
 
 int run(const RunArguments& options) {
+    ProgressLine progress;
+    progress.show("reading " + options.protocol);
     auto plan = run::readProtocol(options.protocol, options.import_limits);
+    progress.show("");
     if (!plan) {
         if (!options.database.empty()) logOf(options.database).fail("protocol refused", plan.errors());
         return fail(plan.errors());

@@ -52,7 +52,10 @@ int simulate(const SimulateArguments& options) {
         return fail(free.errors());
     const auto source = readFile(options.scene);
     if (!source) return fail(source.errors());
+    ProgressLine progress;
+    progress.show("reading " + options.scene);
     auto read = run::readSceneOnDevice(*source, options.scene, options.import_limits);
+    progress.show("");
     if (!read) return fail(read.errors());
     warn(options.scene, read->warnings);
     scene::SceneSpec* spec = &read->scene;
@@ -62,9 +65,8 @@ int simulate(const SimulateArguments& options) {
     // begins with its first row, wherever that is.
     spec->registration = scene::Registration{};
     spec->start_gate = scene::StartGate{};
-    const auto store = run::openBuilds(options.import_limits);
+    const auto store = run::openBuilds(options.import_limits, showBuilds(progress));
     scene::PartCache cache(store.get());
-    ProgressLine progress;
     progress.show("building the scene");
     auto scene = scene::buildScene(*spec, cache);
     if (!scene) return fail(scene.errors());

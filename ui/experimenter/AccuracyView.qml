@@ -77,7 +77,7 @@ Item {
                 Layout.fillWidth: true
                 quiet: true
                 font.pixelSize: look.scale * 12
-                text: accuracy.work.mine ? qsTr("%1 % · %2").arg(Math.floor(100 * accuracy.work.share)).arg(accuracy.work.what) : qsTr("%1 % · another study is measured").arg(Math.floor(100 * accuracy.work.share))
+                text: accuracy.work.mine ? [qsTr("%1 % · %2").arg(Math.floor(100 * accuracy.work.share)).arg(accuracy.work.what), accuracy.work.left].filter(word => word !== "").join(" · ") : qsTr("%1 % · another study is measured").arg(Math.floor(100 * accuracy.work.share))
             }
         }
         FrontView {

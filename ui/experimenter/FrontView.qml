@@ -21,6 +21,16 @@ RowLayout {
             errorName: view.errorName
         }
         Say {
+            objectName: "frontOrigin"
+            Layout.fillWidth: true
+            visible: text !== ""
+            quiet: accuracy.front.elsewhere !== true
+            font.weight: quiet ? Font.Normal : Font.DemiBold
+            wrapMode: Text.WordWrap
+            font.pixelSize: look.scale * 11
+            text: accuracy.front.origin !== undefined ? accuracy.front.origin : ""
+        }
+        Say {
             Layout.fillWidth: true
             quiet: true
             wrapMode: Text.WordWrap

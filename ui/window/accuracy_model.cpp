@@ -13,6 +13,7 @@ namespace passung::window {
 namespace {
 
 constexpr double kLeastNews = 0.002;  // of the work: less is not told again
+constexpr double kKnownShare = 0.03;  // of the work: from there on it is told how long the rest takes
 
 QVariantMap axisMap(const presenter::LogAxis& axis) {
     QVariantList ticks;
@@ -44,6 +45,7 @@ QVariantMap pointMap(const presenter::TickPlot& plot, const presenter::PlotPoint
 AccuracyModel::AccuracyModel(Desk& desk, Studies& studies, const truth::TickEffort& effort)
     : desk_(desk), studies_(studies), effort_(effort) {
     connect(&studies_, &Studies::chosenChanged, this, [this] {
+        readStored();
         emit changed();
         emit workChanged();
     });
@@ -62,6 +64,40 @@ void AccuracyModel::giveWay() {
 }
 
 AccuracyModel::~AccuracyModel() { cancelled_ = true; }
+
+/// What was measured for the study before, once.
+void AccuracyModel::readStored() {
+    const std::string file = path();
+    if (file.empty() || !read_.insert(file).second) return;
+    reader_.run(
+        [file]() -> Result<std::vector<Shared>> {
+            const auto stored = run::readFronts(file);
+            if (!stored) return stored.errors();
+            std::vector<Shared> found;
+            if (!*stored) return found;
+            const auto plan = run::readProtocol(file);
+            if (!plan) return found;  // the page on the study says what is wrong with it
+            for (std::size_t i = 0; i < plan->conditions.size(); ++i)
+                if (auto front = run::frontOf(**stored, plan->conditions[i]))
+                    found.push_back(std::make_shared<Measured>(Measured{*plan, i, *std::move(front), std::nullopt,
+                                                                        run::originOf(**stored, plan->conditions[i])}));
+            return found;
+        },
+        [this, file](Result<std::vector<Shared>> read) { tookStored(std::move(read), file); });
+}
+
+void AccuracyModel::tookStored(Result<std::vector<Shared>> read, const std::string& path) {
+    if (!read) {
+        told_[path] = {.problem = toString(read.errors().front())};
+    } else {
+        for (const Shared& stored : *read) {
+            const int condition = static_cast<int>(stored->condition);
+            measured_.insert({{path, condition}, stored});  // what was measured meanwhile stays
+            conditions_.insert({path, condition});          // the first is shown, unless somebody chose already
+        }
+    }
+    emit changed();
+}
 
 std::string AccuracyModel::path() const { return studies_.card() != nullptr ? studies_.card()->path : std::string(); }
 
@@ -130,6 +166,8 @@ QVariantMap AccuracyModel::front() const {
             {"time", axisMap(drawn.time)},
             {"error", axisMap(drawn.error)},
             {"path", pathWords(measured->front)},
+            {"origin", measured->origin ? originWords(*measured->origin) : QString()},
+            {"elsewhere", measured->origin && (measured->origin->elsewhere || measured->origin->outdated)},
             {"none", points.isEmpty() ? noErrorWords(error_) : QString()}};
 }
 
@@ -164,6 +202,9 @@ QVariantMap AccuracyModel::work() const {
             {"cancelling", runs && cancelled_.load()},
             {"share", share_},
             {"what", setting_ ? settingWords(*setting_, cell_) : pathWord()},
+            {"left", runs && share_ > kKnownShare
+                         ? leftWords(1e-3 * static_cast<double>(since_.elapsed()) * (1.0 - share_) / share_)
+                         : QString()},
             {"why", card == nullptr || !card->sound  ? whyNotMeasure(WhyNotMeasure::NotSound)
                     : desk_.run().view().isRunning() ? whyNotMeasure(WhyNotMeasure::SessionRuns)
                     : runs                           ? whyNotMeasure(WhyNotMeasure::Measures)
@@ -193,6 +234,7 @@ void AccuracyModel::measure() {
     running_ = file;
     cancelled_ = false;
     share_ = 0.0;
+    since_.start();
     setting_.reset();
     told_.erase(file);
     worker_.run(
@@ -213,7 +255,7 @@ void AccuracyModel::measure() {
             };
             auto front = run::measureFront(plan->conditions[index], effort_, watch, builds.get());
             if (!front) return front.errors();
-            return std::make_shared<Measured>(Measured{*std::move(plan), index, *std::move(front), std::nullopt});
+            return std::make_shared<Measured>(Measured{*std::move(plan), index, *std::move(front)});
         },
         [this, file, condition](Result<Shared> measured) { took(std::move(measured), file, condition); });
     emit workChanged();

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <QtCore/QElapsedTimer>
 #include <QtCore/QObject>
 #include <QtCore/QVariant>
 #include <atomic>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "study/run/operating_point.h"
 #include "ui/presenter/tick_plot.h"
@@ -16,8 +18,8 @@
 
 namespace passung::window {
 
-/// What accuracy costs a tick of the chosen study, for QML: measured in a thread of its own, kept while the program
-/// runs, and written into the study where a setting is chosen.
+/// What accuracy costs a tick of the chosen study, for QML: read from the file beside the study, or measured in a
+/// thread of its own; kept while the program runs, and written into the study where a setting is chosen.
 class AccuracyModel : public QObject {
     Q_OBJECT
     Q_PROPERTY(int condition READ condition WRITE setCondition NOTIFY changed)  // index into the plan's
@@ -60,7 +62,8 @@ private:
         plan::StudyPlan plan;
         std::size_t condition = 0;
         run::TickFront front;
-        std::optional<std::size_t> row;  // that is chosen
+        std::optional<std::size_t> row = {};          // that is chosen
+        std::optional<run::FrontOrigin> origin = {};  // of one that was read
     };
     using Shared = std::shared_ptr<Measured>;  // shared: through the event loop
     struct Told {
@@ -74,6 +77,8 @@ private:
     presenter::TickPlot plot(const Measured& measured) const;
     bool tell(const std::string& path, const run::FrontProgress& progress);
     void giveWay();
+    void readStored();
+    void tookStored(Result<std::vector<Shared>> read, const std::string& path);
     void took(Result<Shared> measured, const std::string& path, int condition);
 
     Desk& desk_;
@@ -83,12 +88,14 @@ private:
     std::map<std::string, int> conditions_;                   // shown, by the study's file
     std::map<std::pair<std::string, int>, Shared> measured_;  // by file and condition
     std::map<std::string, Told> told_;                        // by file, of the last thing that was done
+    std::set<std::string> read_;                              // files beside which it was looked for fronts
     std::string running_;                                     // file of the study that is measured; empty: none
     std::atomic<bool> cancelled_{false};
     double share_ = 0.0, cell_ = 0.0;
     std::optional<truth::TickSetting> setting_;  // that is measured
     bool using_ = false;
-    Worker worker_, writer_;  // last: what they call is there until they end
+    QElapsedTimer since_;              // measuring began
+    Worker worker_, writer_, reader_;  // last: what they call is there until they end
 };
 
 }  // namespace passung::window

@@ -94,6 +94,24 @@ QString pathWords(const run::TickFront& front) {
     return words.arg(seconds, 0, 'f', 1);
 }
 
+QString originWords(const run::FrontOrigin& origin) {
+    const QString program = text(origin.commit.empty() ? origin.program : origin.program + ", " + origin.commit);
+    const QString where =
+        origin.elsewhere
+            ? said(QT_TRANSLATE_NOOP("accuracy", "Measured on another machine (%1) by passung %2 on %3."))
+            : said(QT_TRANSLATE_NOOP("accuracy", "Measured before on this machine (%1) by passung %2 on %3."));
+    // Not one after another: a name may hold a place of its own.
+    const QString words = where.arg(text(origin.machine), program, text(origin.date));
+    if (!origin.outdated) return words;
+    return words + QLatin1Char(' ') +
+           said(QT_TRANSLATE_NOOP("accuracy", "The study has changed since: measure again to be sure."));
+}
+
+QString leftWords(double seconds) {
+    return seconds < 60.0 ? said(QT_TRANSLATE_NOOP("accuracy", "about %1 s left")).arg(10.0 * std::ceil(seconds / 10.0))
+                          : said(QT_TRANSLATE_NOOP("accuracy", "about %1 min left")).arg(std::ceil(seconds / 60.0));
+}
+
 QString noErrorWords(presenter::TickError error) {
     return error == presenter::TickError::Overlap
                ? said(QT_TRANSLATE_NOOP("accuracy", "The scene has no obstacle: nothing can overlap."))

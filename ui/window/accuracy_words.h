@@ -2,6 +2,7 @@
 
 #include <QtCore/QString>
 
+#include "study/run/machine/front_file.h"
 #include "study/run/operating_point.h"
 #include "ui/presenter/tick_plot.h"
 
@@ -22,6 +23,10 @@ QString costWords(const truth::PathCost& row, double cell);
 QString pathWord();
 /// Along which path it was measured.
 QString pathWords(const run::TickFront& front);
+/// Who measured a front that was read from a file, when and where.
+QString originWords(const run::FrontOrigin& origin);
+/// How long measuring goes on [s]: "about 3 min left".
+QString leftWords(double seconds);
 QString noErrorWords(presenter::TickError error);
 QString outcomeWords(const run::OperatingPoint& point);
 

@@ -13,8 +13,8 @@ Result<importer::ImportedMesh> Builds::importMesh(const std::string& path, doubl
     return importElsewhere(*program_, path, metres_per_unit, limits_);
 }
 
-std::unique_ptr<Builds> openBuilds(const ImportLimits& limits) {
-    return std::make_unique<Builds>(openDiskStore(), limits);
+std::unique_ptr<Builds> openBuilds(const ImportLimits& limits, BuildWatch told) {
+    return std::make_unique<Builds>(openDiskStore(), limits, std::move(told));
 }
 
 }  // namespace passung::run

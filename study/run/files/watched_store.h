@@ -29,6 +29,9 @@ public:
     /// Both throw BuildCancelled; what is to be kept is kept before.
     std::optional<std::string> load(const std::string& name) override;
     void keep(const std::string& name, std::string_view bytes) override;
+    void building(const scene::BuildStep& step) override {
+        if (store_ != nullptr) store_->building(step);
+    }
     Result<importer::ImportedMesh> importMesh(const std::string& path, double metres_per_unit) override;
 
 private:

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <time.h>
+
 #include <cmath>
+#include <limits>
 
 #include "tests/support/surface_cases.h"
 
@@ -33,13 +36,40 @@ TEST(ConvexFaces, ABoxHasSixFacesHoweverItsSidesAreCut) {
 }
 
 TEST(ConvexFaces, AFanOfADiscIsAFewFaces) {
-    // Truth: closed form: the area of a regular polygon.
-    // A face has 64 corners at most; more triangles than that have the hub of the larger one.
+    // Truth: closed form: the area of a regular polygon; a face has 64 corners at most, which 62 triangles with the hub
+    // have, or all 60 without it.
     for (const int n : {60, 300}) {
         const auto disc = mergeFlatTriangles(test::fanMesh(test::circleLine(.01, n), {0, 0}, 0, true));
-        EXPECT_LE(disc.faces.size(), static_cast<std::size_t>(n / 60 + 2));
+        EXPECT_EQ(disc.faces.size(), static_cast<std::size_t>(n <= 64 ? 1 : (n + 61) / 62)) << n;
         EXPECT_NEAR(areaOf(disc), 0.5 * n * 1e-4 * std::sin(2.0 * std::numbers::pi / n), 1e-15);
     }
+}
+
+/// Of this thread, the least of three times [s].
+double secondsOf(const TriangleMesh& mesh) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 3; ++i) {
+        timespec begin{}, end{};
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begin);
+        EXPECT_FALSE(mergeFlatTriangles(mesh).faces.empty());
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &end);
+        least = std::min(least, static_cast<double>(end.tv_sec - begin.tv_sec) +
+                                    1e-9 * static_cast<double>(end.tv_nsec - begin.tv_nsec));
+    }
+    return least;
+}
+
+TEST(ConvexFaces, ALargeHubTakesAsLongAsManySmallOnes) {
+    // Truth: invariant: as many triangles around one hub and around five hundred. Were the sides of a hub looked
+    // through one by one, the large one took ten times as long (planted).
+    constexpr int kSides = 60, kHubs = 500;
+    const TriangleMesh one = test::fanMesh(test::circleLine(.01, kSides * kHubs), {0, 0}, 0, true);
+    TriangleMesh many;
+    for (int i = 0; i < kHubs; ++i)
+        test::append(many, test::fanMesh(test::circleLine(.01, kSides), {0, 0}, 0.001 * i, true));
+    ASSERT_EQ(one.triangles.size(), many.triangles.size());
+    const double large = secondsOf(one), small = secondsOf(many);
+    EXPECT_LT(large, 3.0 * small) << large << " s, " << small << " s";
 }
 
 TEST(ConvexFaces, CurvedSurfacesKeepTheirTriangles) {

@@ -174,6 +174,45 @@ TEST(SurfaceProxy, LeavesNoUpperHalvesOfRegistersInUse) {
 }
 #endif
 
+TEST(SurfaceProxy, ComesOutOfWhatEnclosesItWhereItIsPlacedInATick) {
+    // Truth: closed form: the cube has to go 9 mm, a millimetre a tick; and invariant: neither memory nor more work
+    // than the budget, but for a face, whatever the number of faces that are asked.
+    const test::SurfaceCase ball = test::scanOnScan(.03, 60);
+    const geometry::TriangleMesh cube = test::boxMesh(Vec3::Constant(-.002), Vec3::Constant(.002));
+    const geometry::TriangleMesh block = test::boxMesh(Vec3::Constant(-.01), Vec3::Constant(.01));
+    constexpr int kBudget = 2000;  // a part of what the scan's faces take
+    for (const auto* around : {&block, &ball.obstacle}) {
+        const ClusterTree held(cube), obstacle(*around);
+        SurfaceProxy proxy(held, obstacle, {.metric_radius = 0.02, .budget = kBudget});
+        test::MeshPairTruth truth(cube, *around);
+        const Pose inside{Quat::Identity(), Vec3(.001, 0, .003)};
+        proxy.place({Quat::Identity(), Vec3(0, 0, .1)});
+        proxy.prepare();
+        proxy.advance({Quat::Identity(), Vec3(0, 0, .1)});
+        int led = 0, suspended = 0;
+        {
+            const support::RtGuard guard;
+            proxy.place(inside);
+            for (int tick = 0; tick < 400; ++tick) {
+                const SurfaceTick now = proxy.advance(inside);
+                led += now.meets;
+                suspended += now.suspended;
+            }
+            if (support::RtGuard::available()) {
+                EXPECT_EQ(guard.violations(), 0) << guard.describe();
+            }
+        }
+        EXPECT_GE(led, 9);
+        EXPECT_GT(truth.distance(proxy.pose(), 1e-9), 0.0);
+        if (around == &block) {
+            EXPECT_NEAR(proxy.pose().p.z(), .012, 1e-5) << "held by the block's top";
+        } else {
+            EXPECT_GT(proxy.pose().p.norm(), .013) << "the scan's least radius";
+            EXPECT_GT(suspended, 3);
+        }
+    }
+}
+
 TEST(SurfaceProxy, AnyBudgetKeepsItOut) {
     // Truth: independent oracle (mesh_crossing.h): whatever work is left for the next tick, nothing crosses.
     const test::SurfaceCase scene = test::blockOnSeams();

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
+#include "core/scene/contact_geometry.h"
 #include "devices/simulated/presets.h"
 #include "study/design/trial_order.h"
 #include "study/measures/measures.h"
@@ -41,12 +43,13 @@ double radialClearance(const plan::Condition& condition) {
     return 0.5 * (std::get<shape::BorePlate>(shape(0)).bore_diameter - std::get<shape::Peg>(shape(1)).diameter);
 }
 
-TEST(ShippedFiles, PegInHoleHasItsTwelveConditions) {
-    // Truth: closed form: 2 clearances x 3 methods x 2 stiffnesses, as the study's own comment says.
+TEST(ShippedFiles, PegInHoleHasItsTwelveConditionsAndTheGeometryOfOne) {
+    // Truth: closed form: 2 clearances x 3 methods x 2 stiffnesses, and one of them from fields, as the study's own
+    // comment says.
     const auto plan = readShipped("peg_in_hole/study.toml");
     ASSERT_TRUE(plan) << toString(plan.errors()[0]);
     EXPECT_TRUE(plan->warnings.empty());
-    ASSERT_EQ(plan->conditions.size(), 12u);
+    ASSERT_EQ(plan->conditions.size(), 13u);
     using enum scene::ContactMethod;
     constexpr scene::ContactMethod kMethods[]{Penalty, GodObjectHeuristic, GodObject};
     const auto sigma7 = simulated::describe(*simulated::findPreset("sigma7"));
@@ -59,12 +62,36 @@ TEST(ShippedFiles, PegInHoleHasItsTwelveConditions) {
         EXPECT_EQ(condition.scene.parts[1].X_WP.p, Vec3(0.020, 0, 0.030));
         EXPECT_EQ(condition.scene.start_gate.hold_ticks, 200);
     }
-    EXPECT_EQ(plan->conditions[0].name, "0.5/penalty/0.5 max");
-    EXPECT_EQ(plan->conditions[9].name, "0.1/god_object_heuristic/max");
-    EXPECT_EQ(plan->conditions[11].name, "0.1/god_object/max");
-    ASSERT_EQ(plan->blocks.size(), 2u);
+    EXPECT_EQ(plan->conditions[0].name, "0.5/penalty/0.5 max/field");
+    EXPECT_EQ(plan->conditions[9].name, "0.1/god_object_heuristic/max/closed_form");
+    EXPECT_EQ(plan->conditions[11].name, "0.1/god_object/max/closed_form");
+    EXPECT_EQ(plan->conditions[12].name, "0.1/god_object/max/field");
+    for (std::size_t i = 0; i < 13; ++i)
+        EXPECT_EQ(scene::geometryOf(plan->conditions[i].scene).geometry,
+                  i < 12 && i / 2 % 3 != 0 ? scene::Geometry::ClosedForm : scene::Geometry::Field);
+    // All but the geometry is that of the condition before.
+    EXPECT_EQ(plan->conditions[12].scene.contact.stiffness, plan->conditions[11].scene.contact.stiffness);
+    EXPECT_EQ(plan->conditions[12].scene.contact.method, plan->conditions[11].scene.contact.method);
+    EXPECT_EQ(radialClearance(plan->conditions[12]), radialClearance(plan->conditions[11]));
+    ASSERT_EQ(plan->blocks.size(), 3u);
     EXPECT_EQ(plan->blocks[0].trials, 2);
     EXPECT_EQ(plan->blocks[1].repetitions, 2);
+    EXPECT_EQ(plan->blocks[2].conditions, (std::vector<std::size_t>{11, 12}));
+    std::vector<std::size_t> twelve(12);
+    std::iota(twelve.begin(), twelve.end(), std::size_t{0});
+    for (const std::size_t b : {0u, 1u}) EXPECT_EQ(plan->blocks[b].conditions, twelve) << plan->blocks[b].name;
+    const auto design = plan::designOf(*plan);
+    EXPECT_EQ(design::sequencesOf(design), 12u) << "the last block is in random order: 12 participants stay balanced";
+    int begins_with_field = 0;
+    for (std::size_t slot = 0; slot < 12; ++slot) {
+        const auto trials =
+            *design::planSession(design, {plan->name, plan->seed, "P" + std::to_string(slot), slot, 0, 1});
+        ASSERT_EQ(trials.size(), 2u + 24u + 2u);
+        EXPECT_EQ(trials[26].condition + trials[27].condition, 11u + 12u);
+        begins_with_field += trials[26].condition == 12u;
+    }
+    EXPECT_GT(begins_with_field, 1);
+    EXPECT_LT(begins_with_field, 11);
     std::vector<std::string> possible;  // all but those of other types of trial and of a secondary task
     for (const auto& definition : measures::definitions()) {
         const auto types = typesWith(definition.name);
@@ -84,6 +111,7 @@ TEST(ShippedFiles, PegInHoleAsksForLoadAfterItsMainBlockAndForTheContactOfEachCo
     EXPECT_EQ(plan->questionnaires[0].moment, plan::Moment::AfterBlock);
     EXPECT_EQ(plan->questionnaires[1].definition.key, "contact_perception");
     EXPECT_EQ(plan->questionnaires[1].moment, plan::Moment::AfterCondition);
+    for (const auto& asked : plan->questionnaires) EXPECT_EQ(asked.block, "main");
 }
 
 TEST(ShippedFiles, DesignsGivesEveryCombinationEquallyOften) {
@@ -181,15 +209,16 @@ TEST(ShippedFiles, NarrowPassageBalancesItsSixConditionsOver42People) {
 }
 
 TEST(ShippedFiles, HiddenOffsetMovesOnlyTheTouchedPlate) {
-    // Truth: closed form: the drawn plate is at pose + shown_offset, which is where study.toml has it.
+    // Truth: closed form: the drawn plate is at pose + shown_offset, which is where study.toml has it. That has a
+    // condition more, and the geometry in its names.
     const auto plain = readShipped("peg_in_hole/study.toml");
     const auto hidden = readShipped("peg_in_hole/hidden_offset.toml");
     ASSERT_TRUE(plain && hidden);
-    ASSERT_EQ(hidden->conditions.size(), plain->conditions.size());
-    for (std::size_t i = 0; i < plain->conditions.size(); ++i) {
+    ASSERT_EQ(hidden->conditions.size() + 1, plain->conditions.size());
+    for (std::size_t i = 0; i < hidden->conditions.size(); ++i) {
         const auto& a = plain->conditions[i];
         const auto& b = hidden->conditions[i];
-        EXPECT_EQ(a.name, b.name);
+        EXPECT_EQ(a.name, b.name + "/" + scene::geometryName(scene::geometryOf(b.scene).geometry));
         EXPECT_DOUBLE_EQ((b.scene.parts[0].X_WP.p - a.scene.parts[0].X_WP.p).norm(), 0.003);
         EXPECT_EQ(b.scene.parts[0].X_WP.p + b.scene.parts[0].shown_offset, a.scene.parts[0].X_WP.p);
         EXPECT_EQ(a.scene.parts[1].X_WP.p, b.scene.parts[1].X_WP.p);

@@ -9,8 +9,8 @@
 namespace passung::run {
 namespace {
 
-plan::StudyPlan shippedStudy() {
-    auto plan = readProtocol(PASSUNG_SOURCE_DIR "/protocols/peg_in_hole/study.toml");
+plan::StudyPlan shippedStudy(const std::string& name = "study") {
+    auto plan = readProtocol(PASSUNG_SOURCE_DIR "/protocols/peg_in_hole/" + name + ".toml");
     if (!plan) throw std::runtime_error(toString(plan.errors().front()));
     return *std::move(plan);
 }
@@ -49,7 +49,7 @@ TEST(Freeze, WhatDoesNotFollowFromMaximaIsTheDrafts) {
 
 TEST(Freeze, AGeometryThatTheTextLeavesOpenIsTheOneWithWhichTheStudyBegan) {
     // Truth: closed form: rows as an earlier program wrote them, when there was but one geometry.
-    const auto draft = shippedStudy();
+    const auto draft = shippedStudy("hidden_offset");
     KeptPlan kept{"", draft.stable_stiffness, {}, {}};
     for (const plan::Condition& condition : draft.conditions) kept.geometry.push_back({condition.name, "field", ""});
     kept.geometry.pop_back();

@@ -233,7 +233,12 @@ TEST_F(ExitCode, AFileOfAnotherKindIsNamedAsWhatItIs) {
          "scene.toml:1:1: error: is a scene file"},
         {{"check", "scene.toml"}, "scene.toml:1:1: error: is a scene file"},
         {{"check", "ball.toml"}, "ball.toml:1:1: error: is a part file"},
+        // The key alone makes no study of it.
+        {{"simulate", "versioned.toml", "--trajectory", "path.csv", "--out", "t.csv"},
+         "versioned.toml:1:1: error: passung: "},
+        {{"check", "versioned.toml"}, "versioned.toml:1:1: error: is a scene file"},
     };
+    writeText(folder_ / "versioned.toml", "passung = 1\n" + readText(folder_ / "scene.toml"));
     for (const auto& [arguments, begins] : mixed) {
         SCOPED_TRACE(joined(arguments));
         const Ended ended = runProgram(folder_.path(), arguments);

@@ -3,6 +3,7 @@
 
 #include "core/scene/contact_geometry.h"
 #include "study/run/files/protocol_files.h"
+#include "study/run/machine/front_file.h"
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/windows.h"
 
@@ -132,6 +133,51 @@ TEST_F(AccuracyPage, ASettingIsMeasuredChosenInThePictureAndWrittenIntoTheStudy)
     EXPECT_EQ(app_->accuracy().chosen(), chosen);
     EXPECT_NE(item(app_->experimenter(), "frontPlot"), nullptr);
     EXPECT_EQ(used.size(), measured.size());
+}
+
+/// Beside the studies before the windows open: of one, a front with three settings from a machine that is none.
+class StoredFront : public AccuracyPage {
+protected:
+    StoredFront() {
+        const auto plan = run::readProtocol(fileOf("small"));
+        if (!plan) throw std::runtime_error(toString(plan.errors().front()));
+        run::FrontFile file = run::newFrontFile("0123abc");
+        file.machine = "an abacus";
+        file.date = "2026-01-02";
+        run::TickFront front;
+        front.ticks = 1500;
+        for (const scene::Geometry geometry :
+             {scene::Geometry::Field, scene::Geometry::Surface, scene::Geometry::ClosedForm}) {
+            truth::PathCost row;
+            row.setting.geometry = geometry;
+            const double seconds = 1e-6 * static_cast<double>(10 + front.measured.rows.size());
+            row.time = {seconds, 2 * seconds, 3 * seconds};
+            row.overlap = row.overlap_bound = 1e-6 / static_cast<double>(1 + front.measured.rows.size());
+            row.on_overlap_front = true;
+            row.ticks = 1500;
+            front.measured.rows.push_back(row);
+        }
+        file.fronts.push_back({plan->conditions[0].name, run::conditionMark(plan->conditions[0]), front});
+        std::ofstream(run::frontPath(fileOf("small"))) << run::frontFileText(file);
+        std::ofstream(run::frontPath(fileOf("other"))) << "no table";
+    }
+};
+
+TEST_F(StoredFront, IsShownWithItsOriginUntilItIsMeasuredHere) {
+    // Truth: closed form: the three rows that were written.
+    waitFor([&] { return !points().isEmpty(); });
+    ASSERT_EQ(points().size(), 3);
+    EXPECT_EQ(textOf("frontOrigin"),
+              "Measured on another machine (an abacus) by passung " PASSUNG_VERSION ", 0123abc on 2026-01-02.");
+    EXPECT_GE(findPoint("god_object", "closed_form"), 0);
+    shot("accuracy_stored");
+    measure();
+    EXPECT_GT(points().size(), 3);
+    EXPECT_EQ(textOf("frontOrigin"), "(not shown)");
+    click("study-other");
+    openPart(3);
+    waitFor([&] { return textOf("accuracyTold") != "(not shown)"; });
+    EXPECT_NE(textOf("accuracyTold").find("study.front.csv"), std::string::npos) << textOf("accuracyTold");
 }
 
 TEST_F(AccuracyPage, TheKeyboardGoesAlongTheFrontAndThroughTheTable) {

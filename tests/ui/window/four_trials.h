@@ -32,13 +32,19 @@ inline std::string fourTrials() {
     swap(R"(factors = ["clearance", "method", "stiffness"])", R"(factors = ["clearance", "method"])");
     swap("cell_mm = 0.5 ", "stiffness_N_per_m = \"0.5 max\"\ncell_mm = 0.5 ");
     swap("timeout_s = 30", "timeout_s = 3000");
-    swap(
-        "[[block]]\nname = \"practice\"\nphase = \"practice\"               # stored and marked, so that an analysis "
-        "can "
-        "leave it out\norder = \"random\"\ntrials = 2                       # two of the twelve conditions\n",
-        "");
+    const auto drop = [&text](const std::string& from, const std::string& to) {
+        const std::size_t at = text.find(from), end = text.find(to, at);
+        if (end == std::string::npos) throw std::runtime_error("protocols/peg_in_hole no longer has " + from);
+        text.erase(at, end - at);
+    };
+    drop("[[factor]]\nname = \"geometry\"", "# ---- What a trial asks for");
+    drop("[[block]]\nname = \"practice\"", "[[block]]\nname = \"main\"");
+    drop("# Twelve, each with the geometry", "\n[[block]]\nname = \"geometry\"");
+    drop("[[block]]\nname = \"geometry\"", "# ---- What is asked");
+    drop("[[analysis]]\noutcome = \"time_s\"\nblock = \"geometry\"", "# ---- What people agree to");
     swap("repetitions = 2", "repetitions = 1\non_invalid = \"repeat_at_block_end\"");
-    swap("moment = \"after_condition\"", "moment = \"session_end\"");
+    swap("moment = \"after_condition\"       # after the last trial of each condition\nblock = \"main\"",
+         "moment = \"session_end\"");
     const std::size_t consent = text.find("# ---- What people agree to");
     if (consent == std::string::npos) throw std::runtime_error("protocols/peg_in_hole no longer asks for consent");
     text.erase(consent, text.find("# Without `measures") - consent);

@@ -1133,6 +1133,26 @@
         <translation>der Weg der Hand</translation>
     </message>
     <message>
+        <source>Measured on another machine (%1) by passung %2 on %3.</source>
+        <translation>Auf einem anderen Rechner gemessen (%1), mit passung %2 am %3.</translation>
+    </message>
+    <message>
+        <source>Measured before on this machine (%1) by passung %2 on %3.</source>
+        <translation>Früher auf diesem Rechner gemessen (%1), mit passung %2 am %3.</translation>
+    </message>
+    <message>
+        <source>The study has changed since: measure again to be sure.</source>
+        <translation>Die Studie wurde seither geändert: Eine neue Messung schafft Sicherheit.</translation>
+    </message>
+    <message>
+        <source>about %1 s left</source>
+        <translation>noch etwa %1 s</translation>
+    </message>
+    <message>
+        <source>about %1 min left</source>
+        <translation>noch etwa %1 min</translation>
+    </message>
+    <message>
         <source>Measured along a simulated hand&apos;s way in a trial, %1 s.</source>
         <translation>Gemessen auf dem Weg einer simulierten Hand in einem Durchgang, %1 s.</translation>
     </message>
