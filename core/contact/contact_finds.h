@@ -88,26 +88,27 @@ public:
     bool hasToProve(double above) const noexcept { return plan_.request.prove && above < answer.lower_bound; }
     void prove(double bound) noexcept { answer.lower_bound = std::min(answer.lower_bound, bound); }
 
-    /// A sample that was read: the deepest so far, a contact, both or neither.
-    void take(const Vec3& p_F, const ShellSample& sample, const field::FieldSample& s) noexcept {
+    /// A sample that was read: the deepest so far, a contact, both or neither. True: a contact.
+    bool take(const Vec3& p_F, const ShellSample& sample, const field::FieldSample& s) noexcept {
         if (s.phi < answer.phi) {
             answer.found = true;
             deepest_ = sample.point;
             setDeepest(p_F, s);
         }
-        if (s.phi < plan_.request.collect_below) collect(sample, s.phi, s.gradient);
+        return s.phi < plan_.request.collect_below && collect(sample, s.phi, s.gradient);
     }
 
-    void collect(const ShellSample& sample, double phi, const Vec3& gradient) noexcept {
+    /// False where the other surface does not face a face's sample.
+    bool collect(const ShellSample& sample, double phi, const Vec3& gradient) noexcept {
         const auto& [position, normal, area, point] = sample;
         const bool of_face = plan_.facing && area > 0.0;
-        if (of_face && !(-normal.dot(place_.R_FS.transpose() * gradient) > kFacing * gradient.norm())) return;
+        if (of_face && !(-normal.dot(place_.R_FS.transpose() * gradient) > kFacing * gradient.norm())) return false;
         ++answer.contacts;
         if (plan_.request.load) {
             const Vec3 f = area * phi * normal;
             force_ += f;
             moment_ += position.cross(f);
-            return;
+            return true;
         }
         ContactPoint contact;
         contact.position = place_.inWorld(position);
@@ -120,6 +121,7 @@ public:
         contact.phi = phi;
         contact.area = area;
         push(contact);
+        return true;
     }
 
     /// The sphere of a node that is not looked into.
@@ -134,6 +136,9 @@ public:
         contact.radius = node.radius;
         push(contact);
     }
+
+    /// The point of the shell that answer.phi belongs to; kNoPoint: none.
+    std::uint32_t deepest() const noexcept { return deepest_; }
 
     /// The deepest point, between the samples too.
     void refine() noexcept;

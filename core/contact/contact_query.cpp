@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "core/contact/certificates.h"
 #include "core/contact/contact_finds.h"
 #include "core/contact/surface_descent.h"
 
@@ -18,14 +19,16 @@ constexpr double kSettled = 48.0;   // groups in contact: from here on their err
 /// Places in the shell's frame, one after the other, though they are parted in memory.
 struct Batch {
     std::array<float, kBatch> x, y, z, radius, read;
-    std::array<std::uint32_t, kBatch> index;
+    std::array<std::uint32_t, kBatch> index, owner;  // owner: the leaf
     std::size_t count = 0;
 
-    void append(const shell::FloatPositions& from, std::uint32_t first, std::size_t n) noexcept {
+    void append(const shell::FloatPositions& from, std::uint32_t first, std::size_t n,
+                std::uint32_t of = kNoPoint) noexcept {
         std::copy_n(from.x(first, n).data(), n, x.data() + count);
         std::copy_n(from.y(first, n).data(), n, y.data() + count);
         std::copy_n(from.z(first, n).data(), n, z.data() + count);
         for (std::uint32_t i = 0; i < n; ++i) index[count + i] = first + i;
+        std::fill_n(owner.begin() + static_cast<std::ptrdiff_t>(count), n, of);
         count += n;
     }
     Vec3 position(std::size_t i) const noexcept {
@@ -102,12 +105,14 @@ struct Traversal {
     const QueryRequest& request;
     const field::DistanceField& field;
     const shell::SphereTree& shell;
+    Certificates* const known;
     NodeQueue queue;
     NearGroups groups;
     Batch batch;
     double unproven_area = 0.0;
+    double expected = kInfinity;  // the search will find φ no farther than this
 
-    Traversal(const ShellInField& in, const QueryPlan& p, ContactFinds& f, QueryWorkspace& w)
+    Traversal(const ShellInField& in, const QueryPlan& p, ContactFinds& f, QueryWorkspace& w, Certificates* k)
         : place(in),
           plan(p),
           finds(f),
@@ -115,27 +120,34 @@ struct Traversal {
           request(p.request),
           field(in.field),
           shell(in.shell),
+          known(p.pointwise() || p.grouped || p.request.prove ? nullptr : k),
           queue(w.heap_, p.ordered) {}
 
-    bool exceedsBudget(const shell::SphereNode& node) const noexcept {
-        const int children = node.leaf ? 0 : static_cast<int>(node.count);
+    bool exceedsBudget(const shell::SphereNode& node) noexcept {
+        int children = 0;
+        if (!node.leaf)
+            for (std::uint32_t i = node.first; i < node.first + node.count; ++i) children += isPassed(i) ? 0 : 1;
         return request.max_nodes > 0 && finds.answer.nodes_visited + children > request.max_nodes;
     }
 
     /// Some nodes that follow each other; `above`: the bound of their parent holds for their points too.
     void push(std::uint32_t begin, std::uint32_t count, double above) noexcept {
-        std::array<float, shell::SphereTree::kChildren> at_centre;
-        const auto& centres = shell.centres();
-        field.lowerBounds(place.S, centres.x(begin, count), centres.y(begin, count), centres.z(begin, count),
-                          {at_centre.data(), count});
-        for (std::uint32_t i = 0; i < count; ++i) {
-            const std::uint32_t node = begin + i;
-            const double bound = std::max(above, static_cast<double>(at_centre[i]) - shell.nodes()[node].radius);
-            ++finds.answer.nodes_visited;
-            if (bound >= finds.pruneAbove()) continue;
+        for (std::uint32_t node = begin; node < begin + count; ++node)
+            if (!isPassed(node)) batch.append(shell.centres(), node, 1);
+        field.lowerBounds(place.S, batch.all(batch.x), batch.all(batch.y), batch.all(batch.z),
+                          {batch.read.data(), batch.count});
+        finds.answer.nodes_visited += static_cast<int>(batch.count);
+        for (std::size_t i = 0; i < batch.count; ++i) {
+            const std::uint32_t node = batch.index[i];
+            const double bound = std::max(above, static_cast<double>(batch.read[i]) - shell.nodes()[node].radius);
+            if (bound >= finds.pruneAbove()) {
+                if (known != nullptr) known->note(node, bound);
+                continue;
+            }
             const bool first = request.max_nodes > 0 && !request.spheres && node < shell.roots().size();
             queue.push({bound, first ? -kInfinity : bound, node});
         }
+        batch.count = 0;
     }
 
     /// One sample; `above`: a lower bound of φ there that is already known.
@@ -146,8 +158,39 @@ struct Traversal {
         finds.take(p_F, sample, place.sample(p_F, request.mode, sample.normal));
     }
 
+    /// True if earlier looks have proven that a node holds nothing that is asked for.
+    bool isPassed(std::uint32_t node) noexcept {
+        return known != nullptr &&
+               known->above(node, shell.nodes()[node].centre, shell.nodes()[node].radius,
+                            std::max(request.collect_below, std::min(expected, finds.pruneAbove())) + 2.0 * plan.slack);
+    }
+
+    /// What was deepest in the last look tells how deep this one gets at least.
+    void expect() noexcept {
+        known->begin(place.S.X_FS);
+        if (!plan.ordered || known->deepest == Certificates::kNone) return;
+        const Vec3 p_F = place.inField(shell.points()[known->deepest].position);
+        expected = field.sample(p_F, request.mode).phi;
+        ++finds.answer.points_tested;
+    }
+
+    /// Proves of the leaves in the batch, as they were read, what they do not hold.
+    void certify() noexcept {
+        const double limit = finds.pruneAbove();
+        for (std::size_t first = 0, end = 0; first < batch.count; first = end) {
+            const std::uint32_t node = batch.owner[first];
+            float least = batch.read[first];
+            for (end = first + 1; end < batch.count && batch.owner[end] == node; ++end)
+                least = std::min(least, batch.read[end]);
+            const shell::SphereNode& leaf = shell.nodes()[node];
+            if (!known->paysToProve(node, leaf.centre, leaf.radius, static_cast<double>(least), limit)) continue;
+            known->noteProof(node, leastBound(leaf), limit);
+        }
+    }
+
     /// All points of a leaf.
-    void evaluateLeaf(const shell::SphereNode& leaf, double above) noexcept {
+    void evaluateLeaf(std::uint32_t node, double above) noexcept {
+        const shell::SphereNode& leaf = shell.nodes()[node];
         if (plan.pointwise()) {
             for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
                 const shell::SurfacePoint& point = shell.points()[i];
@@ -155,16 +198,18 @@ struct Traversal {
             }
             return;
         }
-        batch.append(shell.positions(), leaf.first, leaf.count);
+        batch.append(shell.positions(), leaf.first, leaf.count, node);
         evaluateBatch();
-        if (finds.hasToProve(above)) {
-            std::array<float, shell::SphereTree::kLeafPoints> low;
-            const auto& at = shell.positions();
-            field.lowerBounds(place.S, at.x(leaf.first, leaf.count), at.y(leaf.first, leaf.count),
-                              at.z(leaf.first, leaf.count), {low.data(), leaf.count});
-            const double least = static_cast<double>(*std::min_element(low.begin(), low.begin() + leaf.count));
-            finds.prove(std::max(above, least));
-        }
+        if (finds.hasToProve(above)) finds.prove(std::max(above, leastBound(leaf)));
+    }
+
+    /// No point of the leaf has a true φ below this.
+    double leastBound(const shell::SphereNode& leaf) const noexcept {
+        std::array<float, shell::SphereTree::kLeafPoints> low;
+        const auto& at = shell.positions();
+        field.lowerBounds(place.S, at.x(leaf.first, leaf.count), at.y(leaf.first, leaf.count),
+                          at.z(leaf.first, leaf.count), {low.data(), leaf.count});
+        return static_cast<double>(*std::min_element(low.begin(), low.begin() + leaf.count));
     }
 
     /// The points of the batch; in FieldMode::Trilinear.
@@ -186,12 +231,16 @@ struct Traversal {
         }
         // Only what is not surely above another is read exactly.
         const double lowest = std::min(static_cast<double>(least) + 2.0 * plan.slack, finds.answer.phi + plan.slack);
+        const double every = request.every_below - read_off;
+        const bool thinned = plan.gradients && every < request.collect_below;
+        std::size_t rest = 0;
         for (std::size_t k = 0; k < nears; ++k) {
             const double read = static_cast<double>(batch.read[near[k]]);
-            const std::uint32_t point = batch.index[near[k]];
-            const shell::Facing& weight = shell.facings()[point];
-            const ShellSample sample{batch.position(near[k]), weight.normal.cast<double>(),
-                                     static_cast<double>(weight.area), point};
+            if (thinned && !(read < std::max(every, lowest))) {
+                near[rest++] = near[k];
+                continue;
+            }
+            const ShellSample sample = sampleAt(near[k]);
             const bool exactly = plan.gradients || (!request.load && !(sample.area > 0.0));
             if (read < lowest || (exactly && read < request.collect_below + read_off)) {
                 const Vec3 p_F = place.inField(sample.position);
@@ -200,7 +249,40 @@ struct Traversal {
                 finds.collect(sample, read, Vec3::Zero());
             }
         }
+        if (rest > 0) takeNearest({near.data(), rest});
+        if (known != nullptr) certify();
         batch.count = 0;
+    }
+
+    ShellSample sampleAt(std::uint32_t place_in_batch) const noexcept {
+        const std::uint32_t point = batch.index[place_in_batch];
+        const shell::Facing& weight = shell.facings()[point];
+        return {batch.position(place_in_batch), weight.normal.cast<double>(), static_cast<double>(weight.area), point};
+    }
+
+    /// Of places in the batch, leaf after leaf, in each leaf and octant of the normal the nearest that is a contact.
+    void takeNearest(std::span<std::uint32_t> near) noexcept {
+        const auto octantOf = [&](std::uint32_t i) {
+            const Eigen::Vector3f& n = shell.facings()[batch.index[i]].normal;
+            return (n.x() < 0.0f ? 1u : 0u) | (n.y() < 0.0f ? 2u : 0u) | (n.z() < 0.0f ? 4u : 0u);
+        };
+        for (std::size_t first = 0; first < near.size();) {
+            std::size_t end = first;
+            while (end < near.size() && batch.owner[near[end]] == batch.owner[near[first]]) ++end;
+            std::array<bool, 8> done{};
+            std::span<std::uint32_t> leaf = near.subspan(first, end - first);
+            std::sort(leaf.begin(), leaf.end(), [&](std::uint32_t a, std::uint32_t b) {
+                return batch.read[a] < batch.read[b] || (batch.read[a] == batch.read[b] && a < b);
+            });
+            for (const std::uint32_t i : leaf) {
+                bool& taken = done[octantOf(i)];
+                if (taken) continue;
+                const ShellSample sample = sampleAt(i);
+                const Vec3 p_F = place.inField(sample.position);
+                taken = finds.take(p_F, sample, field.sample(p_F, request.mode));
+            }
+            first = end;
+        }
     }
 
     /// All nodes level by level, and then the leaves that are left: many together are read several times as fast.
@@ -215,29 +297,36 @@ struct Traversal {
             for (std::size_t i = 0; i < batch.count; ++i) {
                 const std::uint32_t node = batch.index[i];
                 const double bound = static_cast<double>(batch.read[i]) - static_cast<double>(shell.radii()[node]);
-                if (bound >= request.collect_below) continue;
+                if (bound >= request.collect_below) {
+                    if (known != nullptr) known->note(node, bound);
+                    continue;
+                }
                 heap[shell.nodes()[node].leaf ? --leaves : end++] = {bound, bound, node};
             }
             batch.count = 0;
         };
-        batch.append(shell.centres(), 0, shell.roots().size());
+        const auto appendNodes = [&](std::uint32_t begin, std::uint32_t count) {
+            for (std::uint32_t node = begin; node < begin + count; ++node)
+                if (!isPassed(node)) batch.append(shell.centres(), node, 1);
+        };
+        appendNodes(0, static_cast<std::uint32_t>(shell.roots().size()));
         for (screen(); next < end; screen())
             while (next < end && batch.count + shell::SphereTree::kChildren <= kBatch) {
                 const shell::SphereNode& node = shell.nodes()[heap[next++].node];
-                batch.append(shell.centres(), node.first, node.count);
+                appendNodes(node.first, node.count);
             }
         if (plan.grouped) return sweepGroups(leaves);
         while (leaves < heap.size()) {
             if (plan.pointwise()) {
-                evaluateLeaf(shell.nodes()[heap[leaves].node], heap[leaves].bound);
+                evaluateLeaf(heap[leaves].node, heap[leaves].bound);
                 ++leaves;
                 continue;
             }
-            while (leaves < heap.size()) {
-                const shell::SphereNode& leaf = shell.nodes()[heap[leaves].node];
+            for (; leaves < heap.size(); ++leaves) {
+                const std::uint32_t node = heap[leaves].node;
+                const shell::SphereNode& leaf = shell.nodes()[node];
                 if (batch.count + leaf.count > kBatch) break;
-                batch.append(shell.positions(), leaf.first, leaf.count);
-                ++leaves;
+                if (!isPassed(node)) batch.append(shell.positions(), leaf.first, leaf.count, node);
             }
             evaluateBatch();
         }
@@ -318,7 +407,7 @@ struct Traversal {
             const shell::SphereNode& node = shell.nodes()[entry.node];
             if (entry.bound >= finds.pruneAbove()) continue;
             if (node.leaf) {
-                evaluateLeaf(node, entry.bound);
+                if (!isPassed(entry.node)) evaluateLeaf(entry.node, entry.bound);
                 continue;
             }
             push(node.first, node.count, entry.bound);
@@ -339,12 +428,14 @@ struct Traversal {
 
 QueryAnswer queryContacts(const field::DistanceField& field, const Pose& X_WF, const shell::SphereTree& shell,
                           const Pose& X_WS, const QueryRequest& request, QueryWorkspace& workspace,
-                          ContactManifold& manifold) noexcept {
+                          ContactManifold& manifold, Certificates* known) noexcept {
     const ShellInField place(field, X_WF, shell, X_WF.inverse() * X_WS, X_WS);
     const QueryPlan plan(request, field);
     ContactFinds finds(place, plan, manifold);
-    Traversal traversal(place, plan, finds, workspace);
+    Traversal traversal(place, plan, finds, workspace, known);
+    if (traversal.known != nullptr) traversal.expect();
     traversal.run();
+    if (traversal.known != nullptr && finds.deepest() != kNoPoint) known->deepest = finds.deepest();
     if (request.refine) finds.refine();
     return finds.told(traversal.unproven_area);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/base/types.h"
@@ -13,6 +14,8 @@ class DistanceField;
 }
 
 namespace passung::contact {
+
+class Certificates;
 
 /// One shell point near or inside an obstacle, or a sphere that stands for points nobody looked at; world frame.
 struct ContactPoint {
@@ -82,8 +85,11 @@ private:
 /// What a query is asked for.
 struct QueryRequest {
     double collect_below = 0.0;  // points with φ < this go into the manifold [m] (the thesis's p_c)
-    double search_below = 0.0;   // the deepest or closest point is searched up to this φ [m]
-    int max_nodes = 0;           // budget (the thesis's η_c, in nodes so that it is deterministic); 0 = none
+    // Of those at this or above it only the nearest of each leaf and octant of the normal [m]; with gradients, in
+    // FieldMode::Trilinear.
+    double every_below = std::numeric_limits<double>::infinity();
+    double search_below = 0.0;  // the deepest or closest point is searched up to this φ [m]
+    int max_nodes = 0;          // budget (the thesis's η_c, in nodes so that it is deterministic); 0 = none
     field::FieldMode mode = field::FieldMode::Trilinear;
     bool prove = false;     // also find QueryAnswer::lower_bound; costs about as much again
     bool spheres = false;   // a node left over by the budget also enters the manifold as a sphere
@@ -125,10 +131,12 @@ struct QueryAnswer {
 ///   below (the wrench of a constant pressure stays the same), and `quality` says which share of the area was proven or
 ///   evaluated. With `spheres` its sphere enters the manifold besides, with φ = b: what keeps the sphere out keeps its
 ///   points out.
+/// With `known`, of this shell in this field, nodes are passed over that earlier looks have proven to hold nothing that
+/// is asked for (certificates.h): the answer is the same but for what it took, `nodes_visited` and `points_tested`.
 /// Appends to `manifold`. rt-safe; the number of steps is bounded by the number of nodes.
 /// @pre `workspace` has room for all nodes of `shell`; poses are finite.
 QueryAnswer queryContacts(const field::DistanceField& field, const Pose& X_WF, const shell::SphereTree& shell,
                           const Pose& X_WS, const QueryRequest& request, QueryWorkspace& workspace,
-                          ContactManifold& manifold) noexcept;
+                          ContactManifold& manifold, Certificates* known = nullptr) noexcept;
 
 }  // namespace passung::contact

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/contact/certificates.h"
 #include "core/field/distance_field.h"
 
 namespace passung::contact {
@@ -36,11 +37,12 @@ struct EdgeSearch {
     const QueryRequest& request;
     const double settled;  // what a further step may still find [m]
     ContactManifold& manifold;
+    Certificates* const known;
     QueryAnswer answer;
     double low = 0.0, high = 0.0;  // between which t's the search is
 
     EdgeSearch(const field::DistanceField& f, const Pose& X_WF_, const shell::EdgeCurves& e, const Pose& X_FS,
-               const Pose& X_WS, const QueryRequest& r, ContactManifold& m)
+               const Pose& X_WS, const QueryRequest& r, ContactManifold& m, Certificates* k)
         : field(f),
           edges(e),
           X_WF(X_WF_),
@@ -52,7 +54,8 @@ struct EdgeSearch {
           p_WS(X_WS.p),
           request(r),
           settled(kAlong * f.cell()),
-          manifold(m) {
+          manifold(m),
+          known(r.prove ? nullptr : k) {
         answer.phi = answer.lower_bound = request.search_below;
     }
 
@@ -62,16 +65,34 @@ struct EdgeSearch {
 
     void run() noexcept {
         const auto stretches = edges.stretches();
-        std::array<float, kStretches> bound;
-        for (std::size_t first = 0; first < stretches.size(); first += kStretches) {
-            const std::size_t count = std::min(kStretches, stretches.size() - first);
-            const auto& at = edges.centres();
-            field.lowerBounds(S, at.x(first, count), at.y(first, count), at.z(first, count), {bound.data(), count});
+        const auto& at = edges.centres();
+        std::array<float, kStretches> x, y, z, bound;
+        std::array<std::uint32_t, kStretches> which;
+        for (std::uint32_t next = 0; next < stretches.size();) {
+            std::size_t count = 0;
+            for (; next < stretches.size() && count < kStretches; ++next) {
+                if (isPassed(next)) continue;
+                x[count] = at.x(next, 1)[0];
+                y[count] = at.y(next, 1)[0];
+                z[count] = at.z(next, 1)[0];
+                which[count++] = next;
+            }
+            field.lowerBounds(S, {x.data(), count}, {y.data(), count}, {z.data(), count}, {bound.data(), count});
+            answer.nodes_visited += static_cast<int>(count);
             for (std::size_t i = 0; i < count; ++i) {
-                ++answer.nodes_visited;
-                if (static_cast<double>(bound[i] - edges.radii()[first + i]) < pruneAbove()) scan(stretches[first + i]);
+                const auto least = static_cast<double>(bound[i] - edges.radii()[which[i]]);
+                if (least < pruneAbove())
+                    scan(stretches[which[i]]);
+                else if (known != nullptr)
+                    known->note(which[i], least);
             }
         }
+    }
+
+    /// True if earlier looks have proven that a stretch holds nothing that is asked for.
+    bool isPassed(std::uint32_t stretch) noexcept {
+        return known != nullptr && known->above(stretch, edges.centres().at(stretch),
+                                                static_cast<double>(edges.radii()[stretch]), pruneAbove());
     }
 
     /// Looks for stations that are lower than those beside them.
@@ -182,12 +203,16 @@ struct EdgeSearch {
 }  // namespace
 
 QueryAnswer searchEdges(const field::DistanceField& field, const Pose& X_WF, const shell::EdgeCurves& edges,
-                        const Pose& X_WS, const QueryRequest& request, ContactManifold& manifold) noexcept {
+                        const Pose& X_WS, const QueryRequest& request, ContactManifold& manifold,
+                        Certificates* known) noexcept {
     const Pose X_FS = X_WF.inverse() * X_WS;
-    EdgeSearch search(field, X_WF, edges, X_FS, X_WS, request, manifold);
+    EdgeSearch search(field, X_WF, edges, X_FS, X_WS, request, manifold, known);
     const bool smooth = request.mode == field::FieldMode::Trilinear || request.mode == field::FieldMode::Cubic;
     const bool sharp = field.finestCell() < field.cell();
-    if (smooth && sharp && request.max_nodes == 0) search.run();
+    if (smooth && sharp && request.max_nodes == 0) {
+        if (known != nullptr) known->begin(X_FS);
+        search.run();
+    }
     QueryAnswer& answer = search.answer;
     if (answer.found) {
         answer.closest_W = X_WF * answer.closest_F;

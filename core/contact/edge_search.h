@@ -19,9 +19,12 @@ namespace passung::contact {
 /// Appends to `manifold`; of `request` spheres, facing, load and refine mean nothing here. The search is left out under
 /// a budget, in modes whose values jump from voxel to voxel, and for fields of cells of one size: refined to no
 /// tolerance, they blunt the obstacle's edges by more than lies between two samples. `lower_bound` is φ*, as far as it
-/// was found. A stretch counts as a node. rt-safe; the number of steps is bounded by the number of stations.
+/// was found. A stretch counts as a node,
+/// if it is not passed over: `known` is of these stretches in this field, as in queryContacts. rt-safe; the number of
+/// steps is bounded by the number of stations.
 QueryAnswer searchEdges(const field::DistanceField& field, const Pose& X_WF, const shell::EdgeCurves& edges,
-                        const Pose& X_WS, const QueryRequest& request, ContactManifold& manifold) noexcept;
+                        const Pose& X_WS, const QueryRequest& request, ContactManifold& manifold,
+                        Certificates* known = nullptr) noexcept;
 inline constexpr double kAlong = 5e-4;
 inline constexpr int kEdgeSteps = 12;
 

@@ -1,6 +1,7 @@
 #include "core/tick/god_object.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/tick/proxy.h"
@@ -14,11 +15,11 @@ namespace {
 struct StepStart {
     Pose X_WG;
     double reach, clearance, clearance_bound;
-    std::size_t contacts;
+    std::size_t cuts;
 };
 
 StepStart startOf(const Proxy& proxy) noexcept {
-    return {proxy.X_WG, proxy.manifold_reach, proxy.clearance, proxy.clearance_bound, proxy.manifold.size()};
+    return {proxy.X_WG, proxy.manifold_reach, proxy.clearance, proxy.clearance_bound, proxy.cuts};
 }
 
 /// From where a step ended in overlap back to where it began. Its contacts are those that `queryAround` left in the
@@ -30,6 +31,7 @@ void takeBack(const ProxyView& view, const StepStart& start) noexcept {
     proxy.manifold_reach = start.reach;
     proxy.clearance = start.clearance;
     proxy.clearance_bound = start.clearance_bound;
+    proxy.cuts = start.cuts;
 }
 
 /// What the step `u` met and went more than `relieve` into, as contacts of the place where it began (cuts:
@@ -44,16 +46,25 @@ void addCuts(const ProxyView& view, const Pose& X_met, const motion::Motion& u) 
         cut.position = back * met.position;
         cut.phi = met.phi - met.gradient.dot(here.wayOf(cut.position, u));
         if (!proxy.manifold.tryPush(cut)) return;
+        ++proxy.cuts;
     }
+}
+
+/// Cuts are those of one step.
+void forgetCuts(Proxy& proxy) noexcept {
+    proxy.manifold.keepFirst(proxy.manifold.size() - std::min(proxy.cuts, proxy.manifold.size()));
+    proxy.cuts = 0;
+    proxy.tried = 0;
 }
 
 struct Step {
     motion::Motion u = motion::Motion::Zero();  // as made
     motion::FrictionPatches rubbing;
     bool made = false;
-    bool whole = false;    // all that was allowed
-    bool halved = false;   // less, because even the last cuts did not keep it out
-    bool at_rest = false;  // nothing is allowed
+    bool whole = false;      // all that was allowed
+    bool halved = false;     // less, because even the last cuts did not keep it out
+    bool at_rest = false;    // nothing is allowed
+    bool suspended = false;  // the work of the tick was done
 };
 
 /// What a step may do, and how to look around where it ends [m].
@@ -65,18 +76,22 @@ struct StepBounds {
 
 /// Makes what is `allowed` of `wanted` within `bounds`.
 Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const motion::Surroundings& around,
-              AllowedMotion allowed, const StepBounds& bounds) noexcept {
+              AllowedMotion allowed, const StepBounds& bounds, LookBudget& budget) noexcept {
     const TickModel& model = moving.model;
     Proxy& proxy = moving.proxy;
-    const StepStart here = startOf(proxy);
-    double share = 1.0;
-    for (int tried = 0; tried <= kCuts + kHalvings; ++tried) {
+    StepStart here = startOf(proxy);
+    // A step that was suspended goes on with its cuts, as short as it was then.
+    const int before = std::clamp(proxy.tried, 0, kCuts + kHalvings);
+    double share = std::ldexp(1.0, -std::max(0, before - kCuts));
+    for (int tried = before; tried <= kCuts + kHalvings; ++tried) {
         const double length = longestPath(model, allowed.u);
-        if (length < kStill) {
-            proxy.manifold.keepFirst(here.contacts);
-            return {.rubbing = allowed.rubbing, .at_rest = true};
-        }
+        if (length < kStill) return {.rubbing = allowed.rubbing, .at_rest = true};
         const motion::Motion u = share * (length > bounds.known ? bounds.known / length : 1.0) * allowed.u;
+        if (!budget.allows()) {
+            proxy.tried = tried;
+            return {.rubbing = {}, .suspended = true};
+        }
+        budget.begin();
         queryAround(moving, moved(model, here.X_WG, u), bounds.reach, bounds.search);
         if (overlap(proxy) <= bounds.accepted) {
             return {.u = u,
@@ -90,12 +105,12 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
         takeBack(moving, here);
         if (tried < kCuts) {
             addCuts(moving, X_met, u);
+            here.cuts = proxy.cuts;
             allowed = allowedMotion(moving, wanted, around);
         } else {
             share *= 0.5;
         }
     }
-    proxy.manifold.keepFirst(here.contacts);
     return {};
 }
 
@@ -112,7 +127,9 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
     double repair = kRepair * model.finest_cell;
     ProxyWay way(model);
     const double between = std::max(margins.relieve, overlap(proxy));
+    LookBudget budget(report);
     bool arrived = false, whole = false;  // whole: the last step was all that was allowed
+    bool suspended = false;
     for (int sweep = 0; sweep <= kSweeps; ++sweep) {
         const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, hand.X_WH);
         const double path = longestPath(model, wanted);
@@ -122,8 +139,11 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
         const double accepted = std::max(margins.accept, before + 0.1 * margins.keep);
         if (sweep < kSweeps && proxy.clearance_bound > path) {
             if (!way.goesOn(model, wanted, path)) break;
-            if (way.bentBy(wanted) > margins.relieve && cutsCorner(moving, X_before, hand.X_WH, between)) break;
+            const bool bent = way.bentBy(wanted) > margins.relieve;
+            suspended = !budget.allows(bent ? 1 + kLooksBetween : 1);
+            if (suspended || (bent && cutsCorner(moving, X_before, hand.X_WH, between))) break;
             report.iterations = static_cast<std::uint32_t>(sweep + 1);
+            budget.begin();
             arrived = arriveFreely(moving, path, reach, accepted);
             if (arrived) break;
         }
@@ -142,18 +162,24 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
         arrived = arrived || (on_the_way && stops);
         if (arrived || stops) break;
         if (sweep == kSweeps) break;
+        suspended = !budget.allows(way.bentBy(allowed.u) > margins.relieve ? 1 + kLooksBetween : 1);
+        if (suspended) break;
         report.iterations = static_cast<std::uint32_t>(sweep + 1);
         const Pose X_here = proxy.X_WG;
-        const Step made =
-            makeStep(moving, wanted, around, allowed,
-                     {.known = known, .accepted = accepted, .reach = next_reach, .search = std::max(next_reach, path)});
+        const Step made = makeStep(
+            moving, wanted, around, allowed,
+            {.known = known, .accepted = accepted, .reach = next_reach, .search = std::max(next_reach, path)}, budget);
         arrived = made.at_rest;
+        suspended = made.suspended;
         if (arrived && sweep == 0) motion.rubbing = made.rubbing;
         if (!made.made) break;
         way.add(made.u);
-        if (way.bentBy(motion::Motion::Zero()) > margins.relieve && cutsCorner(moving, X_before, proxy.X_WG, between)) {
-            queryAround(moving, X_here, reach, reach);
-            break;
+        if (way.bentBy(motion::Motion::Zero()) > margins.relieve) {
+            suspended = !budget.allows(kLooksBetween);
+            if (suspended || cutsCorner(moving, X_before, proxy.X_WG, between)) {
+                queryAround(moving, X_here, reach, reach);
+                break;
+            }
         }
         if (!made.halved) motion.rubbing = made.rubbing;
         repair = std::max(0.0, repair - std::max(0.0, before - overlap(proxy)));
@@ -161,6 +187,10 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
         reach = next_reach;
     }
     if (!arrived) report.status |= kIterationLimit;
+    if (suspended)
+        report.status |= kSuspended;
+    else
+        forgetCuts(proxy);
     motion.last_motion = unconstrainedMotion(model, X_before, proxy.X_WG).norm();
 }
 

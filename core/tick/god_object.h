@@ -35,6 +35,10 @@ namespace passung::tick {
 /// Round a bend the way goes on in the next tick, unless it is fast: the straight line between two ticks' poses, which
 /// is what others see of it, lies within kRelieved of it (proxy_way.h) and is as free as the way itself.
 ///
+/// Cap. What a tick may look at is bounded (kFieldBudget). A step that does not fit is suspended, not dropped: the
+/// proxy stays at the last pose that was accepted, with the cuts so far, and the next tick goes on from there
+/// (kSuspended).
+///
 /// Repair. A start in overlap is no special case: what is in overlap has to come to φ ≥ -max(keep, d - kRepair · s), d
 /// the deepest overlap when the tick begins. The deepest points come out first, at kRepair · s a tick, so that the
 /// coupling's force rises no faster than K times that; those between are not asked yet, because far inside what is
@@ -66,7 +70,7 @@ inline constexpr StageOf kProxySweep{
     sweepProxy,
     {.name = "proxy sweep",
      .parameters = "contact.method, stiffness_N_per_m, rotational_stiffness, mode, budget_nodes, two_way; friction",
-     .cost = "a few queries of each obstacle and as many motions under contacts; bounds: kSweeps, kCuts",
+     .cost = "at most 12 000 units of work a tick, about 0.5 ms; what is left goes on in the next tick",
      .needs = [](const TickModel& model) { return model.hasFieldProxyOf(scene::ContactMethod::GodObject); },
      .reason =
          [](const TickModel& model) {

@@ -1,6 +1,7 @@
 #include "core/tick/god_object_heuristic.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/tick/proxy.h"
 #include "core/tick/proxy_way.h"
@@ -55,13 +56,14 @@ motion::Surroundings around(const TickModel& model, const Proxy& proxy, double l
 
 /// Pushes the proxy out of the overlap that a step's linearisation missed, around a rim for instance: the least motion
 /// that obeys the contacts found there.
-void relieve(const ProxyView& view, double reach, double left) noexcept {
+void relieve(const ProxyView& view, double reach, double left, LookBudget& budget) noexcept {
     const auto& [model, proxy, memory, report] = view;
     const double s = model.finest_cell;
     for (int i = 0; i < kReliefs && overlap(proxy) > std::max(model.margins.relieve, left); ++i) {
         const motion::ConstrainedMotion out =
             motion::constrainMotion(motion::Motion::Zero(), around(model, proxy, left));
-        if (longestPath(model, out.u) > kLongestStep * s) return;
+        if (longestPath(model, out.u) > kLongestStep * s || !budget.allows(2)) return;
+        budget.begin();
         queryAround(view, moved(model, proxy.X_WG, out.u), reach, reach);
     }
 }
@@ -99,20 +101,26 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
     double reach = nextReach(model, motion.last_motion);
     ProxyWay way(model);
     const double between = std::max(model.margins.relieve, overlap(proxy));
-    bool arrived = false;
+    LookBudget budget(report);
+    bool arrived = false, suspended = false;
     for (int sub_step = 0; sub_step < kSubSteps; ++sub_step) {
         const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, hand.X_WH);
         const double path = longestPath(model, wanted);
         arrived = path < kStill;
         if (arrived) break;
+        suspended = !budget.allows();
+        if (suspended) break;
         report.iterations = static_cast<std::uint32_t>(sub_step + 1);
         const Pose X_here = proxy.X_WG;
         const double accepted = std::max(model.margins.accept, overlap(proxy));
         if (proxy.clearance_bound > path) {
             if (!way.goesOn(model, wanted, path)) break;
-            if (way.bentBy(wanted) > model.margins.relieve && cutsCorner(moving, X_before, hand.X_WH, between)) break;
+            const bool bent = way.bentBy(wanted) > model.margins.relieve;
+            suspended = bent && !budget.allows(1 + kLooksBetween);
+            if (suspended || (bent && cutsCorner(moving, X_before, hand.X_WH, between))) break;
         }
         // Nothing in the way: arrive.
+        budget.begin();
         arrived = proxy.clearance_bound > path && arriveFreely(moving, path, reach, accepted);
         if (arrived) break;
         // Step as far as the contacts are known, farther only where there is proven room.
@@ -126,10 +134,17 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
         if (step_path > known) u *= known / step_path;
         if (!way.goesOn(model, u, step_path)) break;
         const double next_reach = std::clamp(kReachGrowth * std::min(step_path, path), reach, kLongestStep * s);
-        bool good = false, whole = step_path <= known;
-        for (int half = 0; half <= kHalvings; ++half, u *= 0.5) {
+        // A step that was suspended goes on as short as it was then.
+        const int tried = std::clamp(proxy.tried, 0, kHalvings);
+        u *= std::ldexp(1.0, -tried);
+        bool good = false, whole = step_path <= known && tried == 0;
+        int half = tried;
+        for (; half <= kHalvings; ++half, u *= 0.5) {
+            suspended = half > tried && !budget.allows(2);  // one of them back
+            if (suspended) break;
+            budget.begin();
             queryAround(moving, moved(model, X_here, u), next_reach, std::max(next_reach, path));
-            relieve(moving, next_reach, left);
+            relieve(moving, next_reach, left, budget);
             good = overlap(proxy) <= accepted;
             if (good && half == 0) motion.rubbing = allowed.rubbing;
             if (good) break;
@@ -138,15 +153,18 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
         }
         if (good) {
             way.add(unconstrainedMotion(model, X_here, proxy.X_WG));
-            good = way.bentBy(motion::Motion::Zero()) <= model.margins.relieve ||
-                   !cutsCorner(moving, X_before, proxy.X_WG, between);
+            const bool bent = way.bentBy(motion::Motion::Zero()) > model.margins.relieve;
+            suspended = bent && !budget.allows(kLooksBetween);
+            good = !bent || (!suspended && !cutsCorner(moving, X_before, proxy.X_WG, between));
         }
         arrived = good && whole;  // the whole constrained motion was made
         if (!good) queryAround(moving, X_here, next_reach, next_reach);
+        if (suspended) proxy.tried = half;
         if (!good || whole) break;
         reach = next_reach;
     }
     if (!arrived) report.status |= kIterationLimit;
+    if (suspended) report.status |= kSuspended;
     motion.last_motion = unconstrainedMotion(model, X_before, proxy.X_WG).norm();
 }
 

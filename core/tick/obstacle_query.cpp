@@ -30,11 +30,15 @@ void merge(const contact::QueryAnswer& answer, contact::QueryAnswer& all) noexce
 /// The points of a shell, and its edges if asked for.
 contact::QueryAnswer query(const field::DistanceField& field, const Pose& X_WF, const shell::SphereTree& shell,
                            const shell::EdgeCurves& edges, const Pose& X_WS, contact::QueryRequest request,
-                           contact::QueryWorkspace& workspace, contact::ContactManifold& manifold) noexcept {
-    contact::QueryAnswer answer = contact::queryContacts(field, X_WF, shell, X_WS, request, workspace, manifold);
+                           contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
+                           contact::ShellCertificates* known) noexcept {
+    contact::QueryAnswer answer = contact::queryContacts(field, X_WF, shell, X_WS, request, workspace, manifold,
+                                                         known != nullptr ? &known->nodes : nullptr);
     if (!request.edges) return answer;
     if (!request.refine) request.search_below = answer.phi;
-    merge(contact::searchEdges(field, X_WF, edges, X_WS, request, manifold), answer);
+    merge(contact::searchEdges(field, X_WF, edges, X_WS, request, manifold,
+                               known != nullptr ? &known->stretches : nullptr),
+          answer);
     return answer;
 }
 
@@ -43,10 +47,10 @@ contact::QueryAnswer query(const field::DistanceField& field, const Pose& X_WF, 
 /// other.
 contact::QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle, const Pose& X_WS,
                                const contact::QueryRequest& request, contact::QueryWorkspace& workspace,
-                               contact::ContactManifold& manifold) noexcept {
+                               contact::ContactManifold& manifold, contact::ShellCertificates* known) noexcept {
     const std::size_t first = manifold.size();
-    contact::QueryAnswer answer =
-        query(*model.held_field, X_WS, *obstacle.shell, *obstacle.edges, obstacle.X_WF, request, workspace, manifold);
+    contact::QueryAnswer answer = query(*model.held_field, X_WS, *obstacle.shell, *obstacle.edges, obstacle.X_WF,
+                                        request, workspace, manifold, known);
     manifold.reverseFrom(first);
     answer.load.force = -answer.load.force;
     answer.load.torque = (obstacle.X_WF.p - X_WS.p).cross(answer.load.force) - answer.load.torque;
@@ -58,7 +62,7 @@ contact::QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle,
 
 contact::QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, contact::QueryRequest request,
                                     contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
-                                    std::span<ObstaclePush> pushes) noexcept {
+                                    std::span<ObstaclePush> pushes, std::span<PairCertificates> known) noexcept {
     request.mode = model.contact.mode;
     request.max_nodes = model.contact.budget_nodes;
     contact::QueryAnswer all;
@@ -77,15 +81,24 @@ contact::QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, co
     };
     for (const Obstacle& obstacle : model.obstacles) {
         const std::size_t first = manifold.size();
-        take(query(*obstacle.field, obstacle.X_WF, *model.shell, *model.edges, X_WS, request, workspace, manifold));
-        if (obstacle.shell != nullptr) take(queryBack(model, obstacle, X_WS, request, workspace, manifold));
+        PairCertificates* const pair = known.empty() ? nullptr : &known[place];
+        take(query(*obstacle.field, obstacle.X_WF, *model.shell, *model.edges, X_WS, request, workspace, manifold,
+                   pair != nullptr ? &pair->held : nullptr));
+        if (obstacle.shell != nullptr)
+            take(queryBack(model, obstacle, X_WS, request, workspace, manifold,
+                           pair != nullptr ? &pair->obstacle : nullptr));
         manifold.assign(first, place++);
     }
     return all;
 }
 
+std::uint32_t workOf(const contact::QueryAnswer& answer) noexcept {
+    return static_cast<std::uint32_t>(answer.nodes_visited + answer.points_tested + 2 * answer.contacts);
+}
+
 void account(const contact::QueryAnswer& answer, Report& report) noexcept {
     report.nodes_visited += static_cast<std::uint32_t>(answer.nodes_visited);
+    report.work += workOf(answer);
     report.quality = std::min(report.quality, answer.quality);
     if (answer.budget_reached) report.status |= kBudgetReached;
     if (answer.manifold_full) report.status |= kContactCap;

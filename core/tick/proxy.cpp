@@ -84,9 +84,14 @@ void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double s
                                   .spheres = true,
                                   .facing = model.contact.two_way,
                                   .edges = true};
-    contact::QueryAnswer answer = queryObstacles(model, X_WG, request, memory.workspace, memory.scratch);
+    // What a budget leaves is kept out by spheres; every point that was looked at has to hold it besides.
+    if (model.contact.budget_nodes == 0) request.every_below = model.margins.accept;
+    contact::QueryAnswer answer =
+        queryObstacles(model, X_WG, request, memory.workspace, memory.scratch, {}, memory.near_proxy);
     account(answer, report);
     std::swap(proxy.manifold, memory.scratch);
+    proxy.cuts = 0;
+    proxy.tried = 0;
     proxy.X_WG = X_WG;
     proxy.manifold_reach = reach;
     proxy.clearance = proxy.clearance_bound = answer.phi;
@@ -107,7 +112,7 @@ bool overlapsBetween(const ProxyView& view, const Pose& X_from, const Pose& X_to
     const contact::QueryRequest request{
         .collect_below = -1e300, .search_below = -accepted, .facing = view.model.contact.two_way, .edges = true};
     const contact::QueryAnswer answer =
-        queryObstacles(view.model, X, request, view.memory.workspace, view.memory.scratch);
+        queryObstacles(view.model, X, request, view.memory.workspace, view.memory.scratch, {}, view.memory.near_proxy);
     account(answer, view.report);
     return answer.found;
 }
@@ -199,15 +204,17 @@ void filterProxy(const TickModel& model, const HandSample& hand, ProxyFilter& fi
 
 void describeProxy(const TickModel&, const Proxy& proxy, ContactRecord& record) noexcept {
     record.proxy_depth = overlap(proxy);
-    for (const contact::ContactPoint& contact : proxy.manifold) record.contacts += isInside(contact) ? 1u : 0u;
+    const contact::ContactPoint* const end = proxy.manifold.end() - std::min(proxy.cuts, proxy.manifold.size());
+    record.contacts = static_cast<std::uint32_t>(std::count_if(proxy.manifold.begin(), end, isInside));
 }
 
 void measureHandDepth(const TickModel& model, const HandSample& hand, QueryMemory& memory, HandDepth& depth,
                       Report& report) noexcept {
     memory.scratch.clear();
-    const contact::QueryAnswer answer =
-        queryObstacles(model, hand.X_WH, {.collect_below = -1e300}, memory.workspace, memory.scratch);
+    const contact::QueryAnswer answer = queryObstacles(model, hand.X_WH, {.collect_below = -1e300}, memory.workspace,
+                                                       memory.scratch, {}, memory.near_hand);
     report.nodes_visited += static_cast<std::uint32_t>(answer.nodes_visited);
+    report.work += workOf(answer);
     depth.hand_depth = std::max(0.0, -answer.phi);
 }
 

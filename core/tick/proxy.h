@@ -15,6 +15,10 @@ inline constexpr double kShortestReach = 0.04;  // per cell: what is looked at e
 inline constexpr double kReachGrowth = 2.0;     // over the last motion, so that a start from rest is not held back long
 inline constexpr double kStill = 1e-8;          // [m]: a motion below this is none
 inline constexpr int kHalvings = 4;
+// Of looks at fields in a tick, in units of about 45 ns: nodes, points, and contacts twice. No look is begun that would
+// be expected to end beyond it, but for the first; the step goes on in the next tick (kSuspended).
+inline constexpr std::uint32_t kFieldBudget = 12000;
+inline constexpr std::uint32_t kLooksBetween = 4;  // that the looks between (cutsCorner) take together, at most
 
 /// `pose` moved by `u`.
 Pose moved(const TickModel& model, const Pose& pose, const motion::Motion& u) noexcept;
@@ -50,6 +54,26 @@ bool isInside(const contact::ContactPoint& contact) noexcept;
 /// one is if none is. Room beyond the reach is used without another look, so that it has to be proven. Where it
 /// overlaps there, the scratch memory then holds what the manifold held before.
 void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept;
+
+/// Work that a tick may still do on looks at fields, and whether it is enough for `looks` more like the last one.
+/// Without any so far it always is: every tick gets on. rt-safe.
+class LookBudget {
+public:
+    explicit LookBudget(const Report& report) noexcept : report_(report), begun_(report.work), before_(report.work) {}
+    /// A look begins.
+    void begin() noexcept {
+        before_ = report_.work;
+        any_ = true;
+    }
+    bool allows(std::uint32_t looks = 1) const noexcept {
+        return !any_ || report_.work - begun_ + looks * (report_.work - before_) <= kFieldBudget;
+    }
+
+private:
+    const Report& report_;
+    std::uint32_t begun_, before_;
+    bool any_ = false;
+};
 
 /// True if a point overlaps by more than `accepted` [m] at the pose `share` of the way between two; the proxy and what
 /// is known of it stay. rt-safe.

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
+#include "core/contact/certificates.h"
 #include "core/contact/contact_query.h"
 #include "core/motion/friction.h"
 
@@ -17,6 +19,9 @@ struct Proxy {
     double manifold_reach = -1.0;       // < 0: nothing known
     double clearance = 0.0;             // least φ of the points that were looked at, as interpolated [m]
     double clearance_bound = 0.0;       // least φ known of any point: beyond the reach proven, spheres included [m]
+    // Of a step that was suspended: contacts at the end of the manifold that it was cut by, and how often it was tried.
+    std::size_t cuts = 0;
+    int tried = 0;
 };
 
 /// Where contacts held the proxy's last motion: each is a point of the held part or of an obstacle.
@@ -37,11 +42,18 @@ struct ProxyMotion {
     double last_motion = 0.0;         // of the proxy, in the metric of metric_radius [m]
 };
 
+/// What earlier looks proved of each obstacle with the held part: of the held part's points, and in two-way contact of
+/// the obstacle's. True wherever the held part is, but sharp only near the poses of those looks.
+struct PairCertificates {
+    contact::ShellCertificates held, obstacle;
+};
+
 /// Memory of queries. Handed on, but what is in it is nobody's: each stage finds it in any state.
 struct QueryMemory {
     static constexpr bool kHandedOn = true;
     contact::QueryWorkspace workspace;
     contact::ContactManifold scratch;
+    std::vector<PairCertificates> near_proxy, near_hand;  // of each obstacle; looks at the proxy, at the hand
 };
 
 }  // namespace passung::tick

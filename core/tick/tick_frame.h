@@ -70,6 +70,7 @@ struct Report {
     std::uint32_t status = 0;  // TickStatus bits
     std::uint32_t iterations = 0;
     std::uint32_t nodes_visited = 0;
+    std::uint32_t work = 0;            // of looks at fields: nodes, points and contacts (account)
     std::uint32_t rows_taken = 0;      // most contacts taken up or let go for one motion (constrained_motion.h)
     std::uint32_t friction_turns = 0;  // most turns of one motion (friction_balance.h)
 };

@@ -1,12 +1,34 @@
 #include "core/tick/tick_state.h"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
+#include "core/field/distance_field.h"
 #include "core/shell/edge_curves.h"
 
 namespace passung::tick {
 
 namespace {
+
+/// Empty ones, of each obstacle.
+std::vector<PairCertificates> certificatesOf(const TickModel& model) {
+    std::vector<PairCertificates> all;
+    // Cells of a size that was chosen take no tolerance.
+    const auto of = [&](const shell::SphereTree& shell, const shell::EdgeCurves& edges,
+                        const field::DistanceField& field) {
+        const double accuracy = std::max(model.contact.tolerance, model.contact.cell > 0.0 ? field.cell() : 0.0);
+        return contact::ShellCertificates{contact::Certificates(shell.nodes().size(), accuracy),
+                                          contact::Certificates(edges.stretches().size(), accuracy)};
+    };
+    for (const Obstacle& obstacle : model.obstacles) {
+        PairCertificates pair;
+        pair.held = of(*model.shell, *model.edges, *obstacle.field);
+        if (obstacle.shell != nullptr) pair.obstacle = of(*obstacle.shell, *obstacle.edges, *model.held_field);
+        all.push_back(std::move(pair));
+    }
+    return all;
+}
 
 void addQueryMemory(const TickModel& model, Proxy& proxy, QueryMemory& memory) {
     // When a budget ends a node stands in by a point and a sphere, and every obstacle may touch every point and every
@@ -24,6 +46,9 @@ void addQueryMemory(const TickModel& model, Proxy& proxy, QueryMemory& memory) {
     proxy.manifold = contact::ContactManifold(capacity);
     memory.scratch = contact::ContactManifold(capacity);
     memory.workspace = contact::QueryWorkspace(nodes);
+    // Of budgets not: what they leave depends on what is looked at first.
+    if (model.hasFieldProxy() && model.contact.budget_nodes == 0)
+        memory.near_proxy = memory.near_hand = certificatesOf(model);
 }
 
 }  // namespace

@@ -35,17 +35,19 @@ QueryClock query_clock;
 namespace passung::tick {
 contact::QueryAnswer real(const TickModel& model, const Pose& X_WS, contact::QueryRequest request,
                           contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
-                          std::span<ObstaclePush> pushes) noexcept asm("__real_" PASSUNG_QUERY_SYMBOL);
+                          std::span<ObstaclePush> pushes, std::span<PairCertificates> known) noexcept
+    asm("__real_" PASSUNG_QUERY_SYMBOL);
 contact::QueryAnswer timed(const TickModel& model, const Pose& X_WS, contact::QueryRequest request,
                            contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
-                           std::span<ObstaclePush> pushes) noexcept asm("__wrap_" PASSUNG_QUERY_SYMBOL);
+                           std::span<ObstaclePush> pushes, std::span<PairCertificates> known) noexcept
+    asm("__wrap_" PASSUNG_QUERY_SYMBOL);
 
 contact::QueryAnswer timed(const TickModel& model, const Pose& X_WS, contact::QueryRequest request,
                            contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
-                           std::span<ObstaclePush> pushes) noexcept {
-    if (!query_clock.running) return real(model, X_WS, request, workspace, manifold, pushes);
+                           std::span<ObstaclePush> pushes, std::span<PairCertificates> known) noexcept {
+    if (!query_clock.running) return real(model, X_WS, request, workspace, manifold, pushes, known);
     const bench::Stopwatch watch;
-    const contact::QueryAnswer answer = real(model, X_WS, request, workspace, manifold, pushes);
+    const contact::QueryAnswer answer = real(model, X_WS, request, workspace, manifold, pushes, known);
     query_clock.seconds += watch.seconds();
     ++query_clock.queries;
     return answer;

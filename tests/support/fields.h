@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/contact/certificates.h"
 #include "core/contact/contact_query.h"
 #include "core/tick/closed_form_proxy.h"
 #include "core/tick/surface_follow.h"
@@ -16,8 +17,8 @@ namespace passung::test {
 /// What saves time and holds nothing that anybody may look at, and a proxy that hides what it holds.
 template <class T>
 inline constexpr bool kIsMemory =
-    std::is_same_v<T, contact::QueryWorkspace> || std::is_same_v<T, tick::ClosedFormMemory> ||
-    std::is_same_v<T, std::optional<surface::SurfaceProxy>>;
+    std::is_same_v<T, contact::QueryWorkspace> || std::is_same_v<T, contact::Certificates> ||
+    std::is_same_v<T, tick::ClosedFormMemory> || std::is_same_v<T, std::optional<surface::SurfaceProxy>>;
 
 /// Converts to whatever a field is.
 struct Anything {
