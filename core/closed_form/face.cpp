@@ -167,9 +167,26 @@ Vec3 gradientOf(const Face& face, const Vec3& p) noexcept {
     return gradientAt(face, p, hasAxis(face) ? aboutAxis(face, p) : AboutAxis{});
 }
 
+namespace {
+
+/// As valueOf().
+double valueAt(const Face& face, const Vec3& p, const AboutAxis& at) noexcept {
+    if (face.kind == Face::Kind::Cylinder) return signOf(face) * (at.r - face.radius);
+    if (face.kind == Face::Kind::Cone)
+        return signOf(face) * (face.out * (at.r - face.radius) + face.along * at.z);
+    return valueOf(face, p);
+}
+
+}  // namespace
+
+Jet slopedValueOf(const Face& face, const Vec3& p) noexcept {
+    const AboutAxis at = hasAxis(face) ? aboutAxis(face, p) : AboutAxis{};
+    return {.value = valueAt(face, p, at), .gradient = gradientAt(face, p, at)};
+}
+
 Jet jetOf(const Face& face, const Vec3& p) noexcept {
     const AboutAxis at = hasAxis(face) ? aboutAxis(face, p) : AboutAxis{};
-    Jet jet{.value = valueOf(face, p), .gradient = gradientAt(face, p, at)};
+    Jet jet{.value = valueAt(face, p, at), .gradient = gradientAt(face, p, at)};
     switch (face.kind) {
         case Face::Kind::Plane:
             break;

@@ -61,6 +61,8 @@ struct Jet {
 // the curvature about the axis is left out. rt-safe.
 double valueOf(const Face& face, const Vec3& p) noexcept;
 Vec3 gradientOf(const Face& face, const Vec3& p) noexcept;
+/// The bits of both, for less than each of them costs. The hessian is left out.
+Jet slopedValueOf(const Face& face, const Vec3& p) noexcept;
 Jet jetOf(const Face& face, const Vec3& p) noexcept;
 
 }  // namespace passung::closed_form

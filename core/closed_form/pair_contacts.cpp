@@ -79,11 +79,11 @@ motion::Motion inWorld(const LineView& view, double rho, const motion::Motion& m
 /// faces. A place on it that something else would have to hold lies in the other part's way, but what touches there is
 /// another line: the edge's own row is implied by that one's, and where two edges are nearly parallel its normal is
 /// any. `outward`: what would have to be between them, in the line's frame.
-double leanOf(const Curve& own, const Touch& touch, const Vec3& outward) noexcept {
+double leanOf(const Curve& own, const Touch& touch, const Place& at, const Vec3& outward) noexcept {
     if (!own.sides || own.kind == Curve::Kind::Point) return 0.0;
-    const Vec3 p = pointOf(own, touch.t), t = slopeOf(own, touch.t).normalized();
-    const Vec3 a = gradientOf((*own.sides)[0], p), b = gradientOf((*own.sides)[1], p);
-    const double turn = a.cross(b).dot(t);
+    const EdgeFrame frame = touch.fixed < own.fixed.size() ? own.fixed[touch.fixed] : frameOf(own, at);
+    const Vec3 &t = frame.way, &a = frame.a, &b = frame.b;
+    const double turn = frame.turn;
     Vec3 n = outward, c = t;
     double beyond = 0.0;  // of the third face
     if (own.kind == Curve::Kind::Straight && touch.kind == Touch::Kind::Fixed) {
@@ -91,7 +91,7 @@ double leanOf(const Curve& own, const Touch& touch, const Vec3& outward) noexcep
         const std::optional<Face>& cap = own.caps[low ? 0 : 1];
         if (at_end && !cap) return 0.0;
         if (at_end) {
-            c = gradientOf(*cap, p);
+            c = gradientOf(*cap, pointOf(own, at));
             beyond = -t.dot(n) / t.dot(c);
         }
     }
@@ -106,12 +106,15 @@ Contact contactOf(const SolidPair& pair, const LineView& view, const TouchName& 
     contact.name = name;
     contact.touch = touch;
     const std::vector<Face>& faces = lumpOf(pair, name).faces;
-    const Vec3 p = pointOf(view.line, touch.t);
-    Vec3 gradient = gradientOf(faces[touch.a], p);
-    contact.gap = valueOf(faces[touch.a], p);
+    const Place at = touch.on(view.line);
+    const Vec3 p = pointOf(view.line, at);
+    const Jet of_a = slopedValueOf(faces[touch.a], p);
+    Vec3 gradient = of_a.gradient;
+    contact.gap = of_a.value;
     if (touch.b != Touch::kNone) {
-        gradient = touch.share * gradient + (1.0 - touch.share) * gradientOf(faces[touch.b], p);
-        contact.gap = touch.share * contact.gap + (1.0 - touch.share) * valueOf(faces[touch.b], p);
+        const Jet of_b = slopedValueOf(faces[touch.b], p);
+        gradient = touch.share * gradient + (1.0 - touch.share) * of_b.gradient;
+        contact.gap = touch.share * contact.gap + (1.0 - touch.share) * of_b.value;
     }
     contact.gap -= view.line.thickness;
     contact.point = view.R_WS * p + view.p_WS;
@@ -120,7 +123,7 @@ Contact contactOf(const SolidPair& pair, const LineView& view, const TouchName& 
     if (!name.core) {
         const SmoothSolid& lines = name.of_held ? *pair.held : *pair.obstacle;
         const Vec3 outward = view.line_q.conjugate() * Vec3(-gradient);
-        contact.lean = leanOf(lines.edges[name.line], touch, outward.normalized());
+        contact.lean = leanOf(lines.edges[name.line], touch, at, outward.normalized());
     }
     return contact;
 }
@@ -133,8 +136,8 @@ struct OnLine {
     double by_t = 0.0, by_tt = 0.0;
 };
 
-OnLine derivativesOn(const LineView& view, const Face& face, double t) noexcept {
-    const Vec3 p = pointOf(view.line, t), slope = slopeOf(view.line, t), r = p - view.origin;
+OnLine derivativesOn(const LineView& view, const Face& face, const Place& at) noexcept {
+    const Vec3 p = pointOf(view.line, at), slope = slopeOf(view.line, at), r = p - view.origin;
     const Jet jet = jetOf(face, p);
     const Vec3& g = jet.gradient;
     const Mat3& K = jet.hessian;
@@ -154,18 +157,19 @@ OnLine derivativesOn(const LineView& view, const Face& face, double t) noexcept 
     const Vec3 Kc = K * slope;
     d.by_tu << view.sign * Kc, view.sign * (r.cross(Kc) + slope.cross(g));
     d.by_t = g.dot(slope);
-    d.by_tt = slope.dot(Kc) + g.dot(bendOf(view.line, t));
+    d.by_tt = slope.dot(Kc) + g.dot(bendOf(view.line, at));
     return d;
 }
 
 MotionMatrix curvatureInS(const LineView& view, const std::vector<Face>& faces, const Touch& touch,
                           bool slides) noexcept {
-    const OnLine a = derivativesOn(view, faces[touch.a], touch.t);
+    const Place at = touch.on(view.line);
+    const OnLine a = derivativesOn(view, faces[touch.a], at);
     if (touch.b == Touch::kNone) {
         if (!slides || touch.kind != Touch::Kind::Smooth || !(a.by_tt > kLeastBend)) return a.by_uu;
         return a.by_uu - a.by_tu * a.by_tu.transpose() / a.by_tt;
     }
-    const OnLine b = derivativesOn(view, faces[touch.b], touch.t);
+    const OnLine b = derivativesOn(view, faces[touch.b], at);
     const double mu = touch.share, nu = 1.0 - mu;
     MotionMatrix H = mu * a.by_uu + nu * b.by_uu;
     const double cross = a.by_t - b.by_t;
@@ -318,7 +322,7 @@ std::optional<Contact> keptAt(const SolidPair& pair, const Pose& X_WH, const Con
     constexpr double kSameNormal = 0.005;  // [rad]
     const LineView view = viewOf(pair, X_WH, contact.name);
     const Lump& lump = lumpOf(pair, contact.name);
-    const Vec3 p = pointOf(view.line, contact.touch.t);
+    const Vec3 p = pointOf(view.line, contact.touch.on(view.line));
     Touch touch = contact.touch;
     if (touch.b != Touch::kNone) {
         if (valueOf(lump.faces[touch.b], p) > valueOf(lump.faces[touch.a], p)) touch.a = touch.b;

@@ -9,6 +9,18 @@
 
 namespace passung::closed_form {
 
+/// An edge at a place of it: its direction, the gradients of its two sides, and how these turn about it.
+struct EdgeFrame {
+    Vec3 way, a, b;
+    double turn = 0.0;
+};
+
+/// A place on a line, of a circle and a spiral with what all that lies there is computed from.
+struct Place {
+    double t = 0.0;
+    double cosine = 0.0, sine = 0.0;  // of t
+};
+
 /// A line of a solid: a straight piece, a circle or an arc of one, a spiral, or a point. P(t), t from -end to end, is
 /// centre + cos t e1 + sin t e2, t in radians, of a circle; centre + t e1 of a straight piece; of a spiral, t from
 /// begin to end, centre + (radius + widening t) (cos t e1 + sin t e2) + climb t e3: on a cylinder, in a plane, on a
@@ -26,6 +38,7 @@ struct Curve {
     // Of a spiral: [m], [m/rad], unit vectors.
     double begin = 0.0, radius = 0.0, widening = 0.0, climb = 0.0;
     Vec3 e3 = Vec3::Zero();
+    std::vector<EdgeFrame> fixed = {};  // of a circle with sides: at fixedPlace(0), fixedPlace(1), ...
 
     /// No point of it is farther from the centre [m]; of no spiral.
     double extent() const noexcept { return kind == Kind::Point ? 0.0 : e1.norm(); }
@@ -64,9 +77,19 @@ struct SmoothSolid {
 std::optional<SmoothSolid> solidOf(const shape::Shape& shape);
 
 // rt-safe.
-Vec3 pointOf(const Curve& curve, double t) noexcept;
-Vec3 slopeOf(const Curve& curve, double t) noexcept;  // dP/dt
-Vec3 bendOf(const Curve& curve, double t) noexcept;   // d²P/dt²
+Place placeOn(const Curve& curve, double t) noexcept;
+Vec3 pointOf(const Curve& curve, const Place& at) noexcept;
+Vec3 slopeOf(const Curve& curve, const Place& at) noexcept;  // dP/dt
+Vec3 bendOf(const Curve& curve, const Place& at) noexcept;   // d²P/dt²
+inline Vec3 pointOf(const Curve& curve, double t) noexcept { return pointOf(curve, placeOn(curve, t)); }
+inline Vec3 slopeOf(const Curve& curve, double t) noexcept { return slopeOf(curve, placeOn(curve, t)); }
+
+inline constexpr int kCirclePieces = 24;  // between samples of a circle or an arc
+inline constexpr int kFixedEvery = 3;     // of those: where a point is looked at wherever the circle lies
+/// Parameter of the i-th place of a circle or an arc that is looked at wherever it lies.
+double fixedPlace(const Curve& circle, std::size_t i) noexcept;
+/// Of an edge with sides.
+EdgeFrame frameOf(const Curve& edge, const Place& at) noexcept;
 
 /// Rows of contacts farther away than this are not needed, because a look goes less far, and would be those of a
 /// thread's other flank [m]; infinite if it has no thread.

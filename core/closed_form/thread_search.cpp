@@ -283,9 +283,12 @@ ThreadPoint threadPoint(const Curve& line, double t) noexcept {
         const double c = std::cos(t), s = std::sin(t);
         placeOn(line, t, c * line.e1 + s * line.e2, c * line.e2 - s * line.e1, at);
     } else {
+        const Place place = placeOn(line, t);
         at.t = t;
-        at.p = pointOf(line, t);
-        at.by_t = slopeOf(line, t);
+        at.cosine = place.cosine;
+        at.sine = place.sine;
+        at.p = pointOf(line, place);
+        at.by_t = slopeOf(line, place);
     }
     seeAboutAxis(std::atan2(at.p.y(), at.p.x()), at);
     return at;

@@ -10,6 +10,7 @@ namespace passung::closed_form {
 /// A place on a line as faces about the z axis see it, and how it moves by t.
 struct ThreadPoint {
     double t = 0.0;
+    double cosine = 0.0, sine = 0.0;  // of t on a circle, else 0 and 0
     Vec3 p = Vec3::Zero();
     Vec3 by_t = Vec3::Zero();
     double r = 0.0, phi = 0.0;

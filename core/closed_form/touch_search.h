@@ -21,8 +21,15 @@ struct Touch {
     std::uint8_t a = 0;      // the face, among the lump's
     std::uint8_t b = kNone;  // of a kink: the other, rising where `a` falls
     double share = 1.0;      // of `a`, of a kink
+    double cosine = 0.0, sine = 0.0;  // of t on a circle; 0 and 0: nobody has computed them
+    std::uint8_t fixed = kNone;       // which fixedPlace() of a circle it is
 
     static constexpr std::uint8_t kNone = 255;
+
+    Place on(const Curve& line) const noexcept {
+        const bool known = line.kind == Curve::Kind::Circle && (cosine != 0.0 || sine != 0.0);
+        return known ? Place{t, cosine, sine} : placeOn(line, t);
+    }
 };
 
 /// Touches of one line.
