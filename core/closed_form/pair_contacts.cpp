@@ -78,9 +78,11 @@ motion::Motion inWorld(const LineView& view, double rho, const motion::Motion& m
 /// An edge of a convex piece touches with normals between those of its two sides, its end with those between three
 /// faces. A place on it that something else would have to hold lies in the other part's way, but what touches there is
 /// another line: the edge's own row is implied by that one's, and where two edges are nearly parallel its normal is
-/// any. `outward`: what would have to be between them, in the line's frame.
-double leanOf(const Curve& own, const Touch& touch, const Place& at, const Vec3& outward) noexcept {
+/// any. `line_q`: of the line's frame, in that of the gradient, against which would have to be between them.
+double leanOf(const Curve& own, const Touch& touch, const Place& at, const Quat& line_q,
+              const Vec3& gradient) noexcept {
     if (!own.sides || own.kind == Curve::Kind::Point) return 0.0;
+    const Vec3 outward = Vec3(line_q.conjugate() * Vec3(-gradient)).normalized();
     const EdgeFrame frame = touch.fixed < own.fixed.size() ? own.fixed[touch.fixed] : frameOf(own, at);
     const Vec3 &t = frame.way, &a = frame.a, &b = frame.b;
     const double turn = frame.turn;
@@ -101,7 +103,16 @@ double leanOf(const Curve& own, const Touch& touch, const Place& at, const Vec3&
     return std::max({0.0, -alpha * std::abs(turn), -beta * std::abs(turn), beyond});
 }
 
-Contact contactOf(const SolidPair& pair, const LineView& view, const TouchName& name, const Touch& touch) noexcept {
+double gapOf(const LineView& view, const std::vector<Face>& faces, const Touch& touch) noexcept {
+    const Vec3 p = pointOf(view.line, touch.on(view.line));
+    double gap = valueOf(faces[touch.a], p);
+    if (touch.b != Touch::kNone) gap = touch.share * gap + (1.0 - touch.share) * valueOf(faces[touch.b], p);
+    return gap - view.line.thickness;
+}
+
+/// Of one that leans more than `most_lean` gap and lean alone.
+Contact contactOf(const SolidPair& pair, const LineView& view, const TouchName& name, const Touch& touch,
+                  double most_lean) noexcept {
     Contact contact;
     contact.name = name;
     contact.touch = touch;
@@ -117,14 +128,14 @@ Contact contactOf(const SolidPair& pair, const LineView& view, const TouchName& 
         contact.gap = touch.share * contact.gap + (1.0 - touch.share) * of_b.value;
     }
     contact.gap -= view.line.thickness;
+    if (!name.core) {
+        const SmoothSolid& lines = name.of_held ? *pair.held : *pair.obstacle;
+        contact.lean = leanOf(lines.edges[name.line], touch, at, view.line_q, gradient);
+        if (contact.lean > most_lean) return contact;
+    }
     contact.point = view.R_WS * p + view.p_WS;
     contact.normal = view.R_WS * (view.sign * gradient);
     contact.a = inWorld(view, pair.metric_radius, slopeBy(view, p - view.origin, gradient));
-    if (!name.core) {
-        const SmoothSolid& lines = name.of_held ? *pair.held : *pair.obstacle;
-        const Vec3 outward = view.line_q.conjugate() * Vec3(-gradient);
-        contact.lean = leanOf(lines.edges[name.line], touch, at, outward.normalized());
-    }
     return contact;
 }
 
@@ -241,16 +252,20 @@ void ContactSearch::moveTo(const Pose& X_WH) noexcept {
     sampled_ = nullptr;
 }
 
-double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept {
+double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contacts, double most_lean) noexcept {
     moveTo(X_WH);
     contacts.clear();
+    overlap_ = 0.0;
     const PlacedPair placed(pair_, X_WH);
     double least = std::numeric_limits<double>::infinity();
     for (Meeting& meeting : meetings_) {
         if (!(boundOf(meeting) > reach)) {
-            Touches touches;
-            look(placed, reach, false, meeting, touches, [&](const Contact& contact) { contacts.add(contact); });
-            if (touches.full()) contacts.setFull();
+            look(placed, reach, false, meeting, [&](const LineView& view, const Touch& touch) {
+                const Contact contact = contactOf(pair_, view, meeting.name, touch, most_lean);
+                overlap_ = std::max(overlap_, -contact.gap);
+                if (!(contact.lean > most_lean)) contacts.add(contact);
+            });
+            if (touches_.full()) contacts.setFull();
         }
         least = std::min(least, boundOf(meeting));
     }
@@ -266,13 +281,13 @@ ContactSearch::Overlap ContactSearch::overlapAt(const Pose& X_WH) noexcept {
     const auto lookAt = [&](std::size_t at) {
         const double reach = meetings_[at].of_thread ? 0.0 : std::min(0.0, kRounding - overlap.depth);
         if (!meetings_[at].touches || boundOf(meetings_[at]) > reach) return;
-        Touches touches;
-        look(placed, reach, true, meetings_[at], touches, [&](const Contact& contact) {
-            if (!(-contact.gap > overlap.depth)) return;
-            overlap.depth = -contact.gap;
+        look(placed, reach, true, meetings_[at], [&](const LineView& view, const Touch& touch) {
+            const double gap = gapOf(view, lumpOf(pair_, meetings_[at].name).faces, touch);
+            if (!(-gap > overlap.depth)) return;
+            overlap.depth = -gap;
             deepest_ = at;
         });
-        overlap.full = overlap.full || touches.full();
+        overlap.full = overlap.full || touches_.full();
     };
     const std::size_t first = deepest_;
     if (first < meetings_.size()) lookAt(first);
@@ -295,8 +310,8 @@ bool ContactSearch::isSampled(const Meeting& meeting) const noexcept {
 }
 
 template <class Take>
-void ContactSearch::look(const PlacedPair& placed, double reach, bool closely, Meeting& meeting, Touches& touches,
-                         Take take) noexcept {
+void ContactSearch::look(const PlacedPair& placed, double reach, bool closely, Meeting& meeting, Take take) noexcept {
+    touches_.clear();
     const TouchName& name = meeting.name;
     const LineView view = placed.view(name);
     const Lump& lump = lumpOf(pair_, name);
@@ -305,16 +320,16 @@ void ContactSearch::look(const PlacedPair& placed, double reach, bool closely, M
     if (meeting.of_thread) {
         if (!isSampled(meeting)) samples_.take(view.line, piece);
         sampled_ = &meeting;
-        meeting.bound = searchAlongThread(view.line, piece, samples_, lump, reach, touches);
+        meeting.bound = searchAlongThread(view.line, piece, samples_, lump, reach, touches_);
     } else {
-        meeting.bound = name.core ? searchCore(view.line, lump, reach, touches)
-                                  : searchEdge(view.line, lump, reach, touches, closely ? &closer : nullptr);
+        meeting.bound = name.core ? searchCore(view.line, lump, reach, touches_)
+                                  : searchEdge(view.line, lump, reach, touches_, closely ? &closer : nullptr);
     }
     meeting.bound = std::max(meeting.bound, closer);
     meeting.lever = (piece.middle - view.origin).norm() + piece.extent;
     meeting.way = way_;
     meeting.turn = turn_;
-    for (const Touch& touch : touches.all()) take(contactOf(pair_, view, name, touch));
+    for (const Touch& touch : touches_.all()) take(view, touch);
 }
 
 std::optional<Contact> keptAt(const SolidPair& pair, const Pose& X_WH, const Contact& contact) noexcept {
@@ -331,7 +346,7 @@ std::optional<Contact> keptAt(const SolidPair& pair, const Pose& X_WH, const Con
         touch.kind = Touch::Kind::Fixed;
     }
     if (valueOf(lump, p) > valueOf(lump.faces[touch.a], p) + kEqual) return std::nullopt;
-    const Contact now = contactOf(pair, view, contact.name, touch);
+    const Contact now = contactOf(pair, view, contact.name, touch, std::numeric_limits<double>::infinity());
     if (contact.touch.b != Touch::kNone && (now.normal - contact.normal).norm() > kSameNormal) return std::nullopt;
     return now;
 }

@@ -413,11 +413,6 @@ LinePiece pieceOf(const Curve& line, std::size_t i) noexcept {
     return piece;
 }
 
-double apartOn(const Curve& curve, double s, double t) noexcept {
-    const double d = std::abs(s - t);
-    return curve.isClosed() ? std::min(d, 2.0 * std::numbers::pi - d) : d;
-}
-
 double valueOf(const Lump& lump, const Vec3& p) noexcept {
     double most = -std::numeric_limits<double>::infinity();
     for (const Face& face : lump.faces) most = std::max(most, valueOf(face, p));

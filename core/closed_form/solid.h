@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -99,7 +102,10 @@ double sightOf(const SmoothSolid& solid) noexcept;
 bool isThread(const SmoothSolid& solid) noexcept;
 
 /// How far two places of the line are apart, by t; round a whole circle the shorter way.
-double apartOn(const Curve& curve, double s, double t) noexcept;
+inline double apartOn(const Curve& curve, double s, double t) noexcept {
+    const double d = std::abs(s - t);
+    return curve.isClosed() ? std::min(d, 2.0 * std::numbers::pi - d) : d;
+}
 
 /// The largest function of the lump's faces: how far the point is outside, exact beside a face, too small beside an
 /// edge.

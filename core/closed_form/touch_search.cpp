@@ -335,14 +335,15 @@ double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& to
     const int pieces = edge.kind == Curve::Kind::Circle ? kCircleSamples : kStraightSamples;
     const double begin = -edge.end, piece = 2.0 * edge.end / pieces;
     const auto all = static_cast<std::size_t>(pieces);
-    LineRow samples;
     if (edge.isClosed()) {
         const CircleRow row(walk);
         if (row.told()) return searchBetween(walk, row, all, piece, reach, touches, closer);
+        LineRow samples;
         for (std::size_t i = 0; i <= all; ++i) samples.at(i) = row.alone(i);
-    } else {
-        for (int i = 0; i <= pieces; ++i) samples.at(static_cast<std::size_t>(i)) = sampleAt(walk, begin + piece * i);
+        return searchBetween(walk, samples, all, piece, reach, touches, closer);
     }
+    LineRow samples;
+    for (int i = 0; i <= pieces; ++i) samples.at(static_cast<std::size_t>(i)) = sampleAt(walk, begin + piece * i);
     return searchBetween(walk, samples, all, piece, reach, touches, closer);
 }
 
