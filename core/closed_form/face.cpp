@@ -76,6 +76,7 @@ Face flank(double pitch, double radius, double middle, bool above, bool hollow, 
     face.along = scale * (above ? cosine : -cosine);
     face.out = scale * (hollow ? -0.5 : 0.5);
     face.pitch = pitch;
+    face.least = least;
     return face;
 }
 
@@ -95,12 +96,6 @@ double fromFlank(const Face& flank, double z, double phi) noexcept {
     const double up = z - flank.origin.z() - leadOf(flank) * phi;
     const double away = flank.along > 0.0 ? up : -up;
     return away - flank.pitch * std::floor(away / flank.pitch + 0.25);
-}
-
-double fromRidge(const Face& flank, double z, double phi) noexcept {
-    const double away = fromFlank(flank, z, phi) + 0.25 * flank.pitch;
-    const double nearest = away > 0.5 * flank.pitch ? away - flank.pitch : away;
-    return flank.along > 0.0 ? nearest : -nearest;
 }
 
 double beforeNextRidge(const Face& flank, double z, double phi) noexcept {

@@ -279,8 +279,9 @@ ContactSearch::Overlap ContactSearch::overlapAt(const Pose& X_WH) noexcept {
     const PlacedPair placed(pair_, X_WH);
     Overlap overlap;
     const auto lookAt = [&](std::size_t at) {
-        const double reach = meetings_[at].of_thread ? 0.0 : std::min(0.0, kRounding - overlap.depth);
-        if (!meetings_[at].touches || boundOf(meetings_[at]) > reach) return;
+        const Meeting& meeting = meetings_[at];
+        const double reach = std::min(0.0, kRounding - overlap.depth);
+        if (!meeting.touches || boundOf(meeting) > (meeting.of_thread ? std::max(reach, meeting.reach) : reach)) return;
         look(placed, reach, true, meetings_[at], [&](const LineView& view, const Touch& touch) {
             const double gap = gapOf(view, lumpOf(pair_, meetings_[at].name).faces, touch);
             if (!(-gap > overlap.depth)) return;
@@ -326,6 +327,7 @@ void ContactSearch::look(const PlacedPair& placed, double reach, bool closely, M
                                   : searchEdge(view.line, lump, reach, touches_, closely ? &closer : nullptr);
     }
     meeting.bound = std::max(meeting.bound, closer);
+    meeting.reach = std::min(reach, 0.0);
     meeting.lever = (piece.middle - view.origin).norm() + piece.extent;
     meeting.way = way_;
     meeting.turn = turn_;

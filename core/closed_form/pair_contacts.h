@@ -82,6 +82,7 @@ private:
         bool of_thread = false;
         bool touches = true;           // false: of no contact, of the bound alone
         double bound = 0.0;            // of the gap, when it was looked at last [m]
+        double reach = 0.0;            // that was looked for then: of a thread a bound says nothing of lower ones [m]
         double lever = 0.0;            // of the line's points about the held part's origin, then [m]
         double way = 0.0, turn = 0.0;  // of the held part, until then
     };

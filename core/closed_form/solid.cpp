@@ -314,7 +314,7 @@ void nameFaces(const Lump& lump, Curve& edge) {
     edge.sides = std::array{sides[0], sides[1]};
     if (edge.kind == Curve::Kind::Circle)
         for (std::size_t i = 0; i <= kCirclePieces / kFixedEvery; ++i)
-            edge.fixed.push_back(frameOf(edge, placeOn(edge, fixedPlace(edge, i))));
+            edge.fixed.push_back(frameOf(edge, placeAt(edge, fixedPlace(edge, i))));
     if (edge.kind != Curve::Kind::Straight) return;
     for (const double end : {-1.0, 1.0}) {
         std::vector<Face> caps;
@@ -334,7 +334,7 @@ std::optional<SmoothSolid> solidOf(const shape::Shape& shape) {
     return solid;
 }
 
-Place placeOn(const Curve& curve, double t) noexcept {
+Place placeAt(const Curve& curve, double t) noexcept {
     if (curve.kind != Curve::Kind::Circle && curve.kind != Curve::Kind::Spiral) return {.t = t};
     return {t, std::cos(t), std::sin(t)};
 }

@@ -80,12 +80,12 @@ struct SmoothSolid {
 std::optional<SmoothSolid> solidOf(const shape::Shape& shape);
 
 // rt-safe.
-Place placeOn(const Curve& curve, double t) noexcept;
+Place placeAt(const Curve& curve, double t) noexcept;
 Vec3 pointOf(const Curve& curve, const Place& at) noexcept;
 Vec3 slopeOf(const Curve& curve, const Place& at) noexcept;  // dP/dt
 Vec3 bendOf(const Curve& curve, const Place& at) noexcept;   // d²P/dt²
-inline Vec3 pointOf(const Curve& curve, double t) noexcept { return pointOf(curve, placeOn(curve, t)); }
-inline Vec3 slopeOf(const Curve& curve, double t) noexcept { return slopeOf(curve, placeOn(curve, t)); }
+inline Vec3 pointOf(const Curve& curve, double t) noexcept { return pointOf(curve, placeAt(curve, t)); }
+inline Vec3 slopeOf(const Curve& curve, double t) noexcept { return slopeOf(curve, placeAt(curve, t)); }
 
 inline constexpr int kCirclePieces = 24;  // between samples of a circle or an arc
 inline constexpr int kFixedEvery = 3;     // of those: where a point is looked at wherever the circle lies

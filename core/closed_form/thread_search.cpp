@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "core/closed_form/touch_minimum.h"
 
@@ -11,15 +12,11 @@ namespace passung::closed_form {
 
 namespace {
 
-constexpr double kPiece = 2.0 * std::numbers::pi / ThreadSamples::kMost;  // of a spiral and a circle [rad]
-constexpr int kFewestPieces = 4;
-constexpr int kStraightPieces = 12;
 constexpr std::size_t kFan = 4;   // pieces from one fixed point to the next
 constexpr double kAcross = 0.15;  // of a pitch: a piece of a line across a thread's ridges
 constexpr int kMostAcross = 64;   // such pieces
 constexpr double kLevel = 1e-9;   // second derivative by t [m]
 constexpr double kSamePitch = 1e-12;
-constexpr double kLeastRadius = 1e-12;  // [m]
 
 /// A lump's function along a line.
 class SpiralWalk {
@@ -45,6 +42,7 @@ public:
     const Curve& line() const noexcept { return line_; }
     const Lump& lump() const noexcept { return lump_; }
     const Face* flank() const noexcept { return flank_; }
+    std::span<const Face* const> others() const noexcept { return {faces_.data(), count_}; }
     /// The function is nowhere on the line below this.
     double least() const noexcept { return least_; }
 
@@ -122,7 +120,7 @@ private:
 
 /// A bound of the function along a helix of the ridges' own pitch, which a helix about the axis keeps all along: less
 /// how far the line lies from such a one. -infinity of other lines.
-double boundOfHelix(const Curve& line, const LinePiece& piece, const Lump& lump) noexcept {
+double boundOfHelix(const Curve& line, const LinePiece& piece, const Lump& lump, double reach) noexcept {
     double least = -std::numeric_limits<double>::infinity();
     if (line.kind != Curve::Kind::Spiral || line.widening != 0.0 || !(line.e3.z() > 0.5)) return least;
     const double half = 0.5 * (piece.end - piece.begin),
@@ -135,9 +133,11 @@ double boundOfHelix(const Curve& line, const LinePiece& piece, const Lump& lump)
         if (face.kind != Face::Kind::Helicoid) continue;
         if (std::abs(line.climb * 2.0 * std::numbers::pi - face.pitch) > kSamePitch * face.pitch) continue;
         const double z = piece.middle.z(), phi = 0.5 * (piece.begin + piece.end) + turned;
+        const double least_radius = reach < 0.0 ? face.least : -std::numeric_limits<double>::infinity();
+        const double known = std::min(beforeNextRidge(face, z, phi), line.radius - least_radius);
         least = std::max(
             least, std::min(face.out * (line.radius - face.radius) + std::abs(face.along) * fromFlank(face, z, phi),
-                            beforeNextRidge(face, z, phi)));
+                            known + std::min(reach, 0.0)));
     }
     return least - off;
 }
@@ -150,43 +150,48 @@ public:
         : walk_(walk), reach_(reach), touches_(touches) {}
 
     double search(const LinePiece& piece, const ThreadSamples& samples) noexcept {
-        const double speed = piece.speed;
+        ThreadHeights heights;
+        heights.take(samples, walk_.others(), walk_.flank(), reach_);
+        const Seen seen{samples, heights};
         double least = std::numeric_limits<double>::infinity();
-        SpiralSample low = sampled(samples[0]);
-        double bound = boundAt(low);
         for (std::size_t i = 0; i < samples.pieces(); ++i) {
-            if (i % kFan == 0) addFixed(walk_, low, reach_, touches_);
-            SpiralSample high = sampled(samples[i + 1]);
-            const double farthest = speed * (high.at.t - low.at.t);
-            const double bound_high = boundAt(high), between = 0.5 * (bound + bound_high - farthest);
+            if (i % kFan == 0) addFixedAt(seen, i);
+            const double farthest = piece.speed * (samples.t[i + 1] - samples.t[i]);
+            const double between = 0.5 * (heights.bound[i] + heights.bound[i + 1] - farthest);
             least = std::min(least, between);
-            if (between <= reach_) look(low, high);
-            low = high;
-            bound = bound_high;
+            if (between <= reach_) look(seen, i);
         }
         const Curve& line = walk_.line();
         const bool ends = line.kind == Curve::Kind::Spiral ? piece.end >= line.end : !line.isClosed();
-        if (ends) addFixed(walk_, low, reach_, touches_);
+        if (ends) addFixedAt(seen, samples.pieces());
         return least;
     }
 
 private:
-    SpiralSample sampled(const ThreadPoint& point) const noexcept {
+    struct Seen {
+        const ThreadSamples& samples;
+        const ThreadHeights& heights;
+    };
+
+    const Face& faceAt(const Seen& seen, std::size_t i) const noexcept {
+        const std::int64_t face = seen.heights.face[i];
+        return face == ThreadHeights::kFlank ? *walk_.flank() : *walk_.others()[static_cast<std::size_t>(face)];
+    }
+    SpiralSample sampled(const Seen& seen, std::size_t i) const noexcept {
         SpiralSample sample;
-        sample.at = point;
-        sample.face = walk_.highest(point, sample.value);
-        sample.slope = walk_.slope(*sample.face, point);
+        sample.at = seen.samples[i];
+        sample.value = seen.heights.value[i];
+        sample.face = &faceAt(seen, i);
+        sample.slope = walk_.slope(*sample.face, sample.at);
         return sample;
     }
-
-    /// Of the function there, and of what it is when the next turn's flank begins to count: no sample changes faster.
-    double boundAt(const SpiralSample& sample) const noexcept {
-        if (sample.face != walk_.flank()) return sample.value;
-        return std::min(sample.value, beforeNextRidge(*sample.face, sample.at.p.z(), sample.at.phi));
+    void addFixedAt(const Seen& seen, std::size_t i) noexcept {
+        if (!(seen.heights.value[i] > reach_)) addFixed(walk_, sampled(seen, i), reach_, touches_);
     }
 
     /// In pieces in which the line does not go far across ridges.
-    void look(const SpiralSample& low, const SpiralSample& high) noexcept {
+    void look(const Seen& seen, std::size_t i) noexcept {
+        const SpiralSample low = sampled(seen, i), high = sampled(seen, i + 1);
         const Face* flank = walk_.flank();
         if (flank == nullptr) return bracket(low, high);
         const double begin = low.at.t, span = high.at.t - begin;
@@ -194,26 +199,32 @@ private:
                               std::max(std::abs(SpiralWalk::acrossRidges(*flank, low.at)),
                                        std::abs(SpiralWalk::acrossRidges(*flank, high.at)));
         const int pieces = std::clamp(static_cast<int>(std::ceil(std::min(across / kAcross, 1e3))), 1, kMostAcross);
-        if (pieces == 1) return lookAtTurns(low, high);
+        const double at_low = outOfRidge(*flank, seen.heights.away[i]);
+        const double at_high = outOfRidge(*flank, seen.heights.away[i + 1]);
+        if (pieces == 1) return lookAtTurns(low, at_low, high, at_high);
         SpiralSample from = low;
-        for (int i = 1; i <= pieces; ++i) {
-            const SpiralSample to = i < pieces ? sampleAt(walk_, begin + span * i / pieces) : high;
-            lookAtTurns(from, to);
+        double at_from = at_low;
+        for (int k = 1; k <= pieces; ++k) {
+            const SpiralSample to = k < pieces ? sampleAt(walk_, begin + span * k / pieces) : high;
+            const double at_to = k < pieces ? outwardsAt(to.at) : at_high;
+            lookAtTurns(from, at_from, to, at_to);
             from = to;
+            at_from = at_to;
         }
     }
 
+    double outwardsAt(const ThreadPoint& at) const noexcept {
+        return outOfRidge(*walk_.flank(), fromFlank(*walk_.flank(), at.p.z(), at.phi));
+    }
+
     /// Where the line passes the middle of a ridge, only what lies on its side of the flank counts.
-    void lookAtTurns(const SpiralSample& low, const SpiralSample& high) noexcept {
-        const Face& flank = *walk_.flank();
-        const double side = flank.along > 0.0 ? 1.0 : -1.0;
-        const auto outwards = [&](const ThreadPoint& at) { return side * fromRidge(flank, at.p.z(), at.phi); };
-        const double at_low = outwards(low.at), at_high = outwards(high.at);
-        const bool passes = (at_low > 0.0) != (at_high > 0.0) && std::abs(at_low - at_high) < 0.5 * flank.pitch;
+    void lookAtTurns(const SpiralSample& low, double at_low, const SpiralSample& high, double at_high) noexcept {
+        const bool passes =
+            (at_low > 0.0) != (at_high > 0.0) && std::abs(at_low - at_high) < 0.5 * walk_.flank()->pitch;
         if (!passes) return bracket(low, high);
         SpiralSample middle;
         middle.at = walk_.at(
-            zeroBetween(low.at.t, high.at.t, at_low, at_high, [&](double t) { return outwards(walk_.at(t)); }));
+            zeroBetween(low.at.t, high.at.t, at_low, at_high, [&](double t) { return outwardsAt(walk_.at(t)); }));
         middle.face = walk_.besideFlank(middle.at, middle.value);
         if (middle.face == nullptr) return;
         middle.slope = walk_.slope(*middle.face, middle.at);
@@ -235,99 +246,9 @@ private:
 
 }  // namespace
 
-namespace {
-
-/// Cosines and sines at the pieces of a turn.
-struct TurnSamples {
-    std::array<double, ThreadSamples::kMost> cosine{}, sine{};
-
-    TurnSamples() noexcept {
-        for (std::size_t i = 0; i < cosine.size(); ++i) {
-            cosine[i] = std::cos(kPiece * static_cast<double>(i));
-            sine[i] = std::sin(kPiece * static_cast<double>(i));
-        }
-    }
-};
-const TurnSamples kTurnSamples;
-
-/// Point and slope of a spiral, `out` and `around` being its directions there.
-void placeOn(const Curve& spiral, double t, const Vec3& out, const Vec3& around, ThreadPoint& at) noexcept {
-    const double radius = spiral.radius + spiral.widening * t;
-    at.t = t;
-    at.p = spiral.centre + radius * out + spiral.climb * t * spiral.e3;
-    at.by_t = spiral.widening * out + radius * around + spiral.climb * spiral.e3;
-}
-
-/// The rest, of point and slope; the angle being known.
-void seeAboutAxis(double phi, ThreadPoint& at) noexcept {
-    const double x = at.p.x(), y = at.p.y(), u = at.by_t.x(), v = at.by_t.y();
-    at.r = std::sqrt(x * x + y * y);
-    at.phi = phi;
-    const double r = std::max(at.r, kLeastRadius);
-    at.r_by_t = (x * u + y * v) / r;
-    at.phi_by_t = (x * v - y * u) / (r * r);
-}
-
-/// atan(q) of a small q, as exact as the numbers are.
-double smallAngle(double q) noexcept {
-    const double q2 = q * q;
-    return q * (1.0 + q2 * (-1.0 / 3.0 + q2 * (1.0 / 5.0 + q2 * (-1.0 / 7.0 + q2 * (1.0 / 9.0)))));
-}
-constexpr double kSmallAngle = 0.03;  // then what smallAngle() leaves out is below 2e-18
-
-}  // namespace
-
-ThreadPoint threadPoint(const Curve& line, double t) noexcept {
-    ThreadPoint at;
-    if (line.kind == Curve::Kind::Spiral) {
-        const double c = std::cos(t), s = std::sin(t);
-        placeOn(line, t, c * line.e1 + s * line.e2, c * line.e2 - s * line.e1, at);
-    } else {
-        const Place place = placeOn(line, t);
-        at.t = t;
-        at.cosine = place.cosine;
-        at.sine = place.sine;
-        at.p = pointOf(line, place);
-        at.by_t = slopeOf(line, place);
-    }
-    seeAboutAxis(std::atan2(at.p.y(), at.p.x()), at);
-    return at;
-}
-
-/// Where the spiral lies nearly about the axis, angles are those of its own t and a little more.
-void ThreadSamples::takeTurn(const Curve& spiral, const LinePiece& piece) noexcept {
-    const double c = std::cos(piece.begin), s = std::sin(piece.begin);
-    const Vec3 e1 = c * spiral.e1 + s * spiral.e2, e2 = c * spiral.e2 - s * spiral.e1;
-    const double level = std::sqrt(e1.x() * e1.x() + e1.y() * e1.y()), begin = std::atan2(e1.y(), e1.x());
-    const bool upright = spiral.e3.z() > 0.5;
-    for (std::size_t i = 0; i < pieces_; ++i) {
-        const double turned = kPiece * static_cast<double>(i), ct = kTurnSamples.cosine[i], st = kTurnSamples.sine[i];
-        ThreadPoint& at = points_[i];
-        placeOn(spiral, piece.begin + turned, ct * e1 + st * e2, ct * e2 - st * e1, at);
-        const double x = (ct * e1.x() - st * e1.y()) / level, y = (st * e1.x() + ct * e1.y()) / level;
-        const double along = at.p.x() * x + at.p.y() * y, aside = at.p.y() * x - at.p.x() * y;
-        const bool near = upright && std::abs(aside) < kSmallAngle * along;
-        seeAboutAxis(near ? begin + turned + smallAngle(aside / along) : std::atan2(at.p.y(), at.p.x()), at);
-    }
-}
-
-void ThreadSamples::take(const Curve& line, const LinePiece& piece) noexcept {
-    const double span = piece.end - piece.begin;
-    const int pieces = line.kind == Curve::Kind::Straight
-                           ? kStraightPieces
-                           : std::max(kFewestPieces, static_cast<int>(std::ceil(span / kPiece - 1e-9)));
-    pieces_ = std::min<std::size_t>(static_cast<std::size_t>(pieces), kMost);
-    if (line.kind == Curve::Kind::Spiral && pieces > kFewestPieces)
-        takeTurn(line, piece);
-    else
-        for (std::size_t i = 0; i < pieces_; ++i)
-            points_[i] = threadPoint(line, piece.begin + span * static_cast<double>(i) / static_cast<double>(pieces_));
-    points_[pieces_] = threadPoint(line, piece.end);
-}
-
 double searchAlongThread(const Curve& edge, const LinePiece& piece, const ThreadSamples& samples, const Lump& lump,
                          double reach, Touches& touches) noexcept {
-    const double bound = boundOfHelix(edge, piece, lump);
+    const double bound = boundOfHelix(edge, piece, lump, reach);
     if (bound > reach) return bound;
     const SpiralWalk walk(edge, piece, lump);
     if (walk.least() > reach) return walk.least();

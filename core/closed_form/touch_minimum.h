@@ -13,6 +13,7 @@ namespace passung::closed_form {
 
 inline constexpr int kSteps = 60;         // to close a bracket
 inline constexpr double kClosed = 1e-10;  // of a line's parameter
+inline constexpr double kCrossed = 1e-8;  // [m]: faces that are farther apart do not cross there, one of them jumps
 
 inline std::uint8_t placeOf(const Lump& lump, const Face& face) noexcept {
     return static_cast<std::uint8_t>(&face - lump.faces.data());
@@ -105,6 +106,7 @@ Touch minimumBetween(const Walk& walk, SampleOn<Walk> low, SampleOn<Walk> high) 
         if (one_face) return touchAt(Touch::Kind::Smooth, here.at, of_low, placeOf(lump, *low.face));
         const double falls = walk.slope(*low.face, here.at), rises = walk.slope(*high.face, here.at);
         if (falls <= 0.0 && rises >= 0.0) {
+            if (std::abs(walk.value(*high.face, here.at) - of_low) > kCrossed) break;
             if (rises - falls <= 0.0)
                 return touchAt(Touch::Kind::Smooth, here.at, of_low, placeOf(lump, *low.face));
             return kinkAt(here.at, of_low, placeOf(lump, *low.face), placeOf(lump, *high.face),

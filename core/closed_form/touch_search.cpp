@@ -63,7 +63,7 @@ private:
 };
 
 double slopeOn(const Face& face, const Curve& line, double t) noexcept {
-    const Place at = placeOn(line, t);
+    const Place at = placeAt(line, t);
     return gradientOf(face, pointOf(line, at)).dot(slopeOf(line, at));
 }
 
@@ -83,7 +83,7 @@ public:
     const Highest& faces() const noexcept { return highest_; }
 
     Point at(double t) const noexcept {
-        const Place place = placeOn(line_, t);
+        const Place place = placeAt(line_, t);
         return {place, pointOf(line_, place)};
     }
     double value(const Face& face, const Point& at) const noexcept { return valueOf(face, at.p); }

@@ -28,7 +28,7 @@ struct Touch {
 
     Place on(const Curve& line) const noexcept {
         const bool known = line.kind == Curve::Kind::Circle && (cosine != 0.0 || sine != 0.0);
-        return known ? Place{t, cosine, sine} : placeOn(line, t);
+        return known ? Place{t, cosine, sine} : placeAt(line, t);
     }
 };
 
