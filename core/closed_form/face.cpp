@@ -167,8 +167,7 @@ namespace {
 /// As valueOf().
 double valueAt(const Face& face, const Vec3& p, const AboutAxis& at) noexcept {
     if (face.kind == Face::Kind::Cylinder) return signOf(face) * (at.r - face.radius);
-    if (face.kind == Face::Kind::Cone)
-        return signOf(face) * (face.out * (at.r - face.radius) + face.along * at.z);
+    if (face.kind == Face::Kind::Cone) return signOf(face) * (face.out * (at.r - face.radius) + face.along * at.z);
     return valueOf(face, p);
 }
 

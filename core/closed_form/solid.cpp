@@ -346,8 +346,7 @@ Vec3 pointOf(const Curve& curve, const Place& at) noexcept {
         case Curve::Kind::Straight:
             return curve.centre + at.t * curve.e1;
         case Curve::Kind::Spiral:
-            return curve.centre +
-                   (curve.radius + curve.widening * at.t) * (at.cosine * curve.e1 + at.sine * curve.e2) +
+            return curve.centre + (curve.radius + curve.widening * at.t) * (at.cosine * curve.e1 + at.sine * curve.e2) +
                    curve.climb * at.t * curve.e3;
         case Curve::Kind::Point:
             break;

@@ -40,9 +40,9 @@ PASSUNG_INLINE double smallAngle(double q) noexcept {
 constexpr double kSmallAngle = 0.03;  // then what smallAngle() leaves out is below 2e-18
 
 struct Turn {
-    Vec3 e1, e2;                     // at its begin
-    double begin = 0.0;              // of t
-    double level = 1.0, first = 0.0; // length of e1 across the axis, its angle about it
+    Vec3 e1, e2;                      // at its begin
+    double begin = 0.0;               // of t
+    double level = 1.0, first = 0.0;  // length of e1 across the axis, its angle about it
     bool upright = false;
 };
 
@@ -94,15 +94,20 @@ PASSUNG_INLINE void takeFace(const Face& face, std::int64_t number, const Thread
     const double ax = face.axis.x(), ay = face.axis.y(), az = face.axis.z();
     const double radius = face.radius, along = face.along, out = face.out, sign = face.hollow ? -1.0 : 1.0;
     for (std::size_t i = 0; i < kRoom; ++i) {
-        double value = 0.0;
-        if constexpr (kKind == Face::Kind::Plane)
+        double value = 0.0, slope = 0.0;
+        if constexpr (kKind == Face::Kind::Plane) {
             value = sum(ax * (s.x[i] - ox), ay * (s.y[i] - oy), az * (s.z[i] - oz));
-        else if constexpr (kKind == Face::Kind::Cylinder)
+            slope = sum(ax * s.by_x[i], ay * s.by_y[i], az * s.by_z[i]);
+        } else if constexpr (kKind == Face::Kind::Cylinder) {
             value = sign * (s.r[i] - radius);
-        else
+            slope = sign * s.r_by_t[i];
+        } else {
             value = sign * (out * (s.r[i] - radius) + along * (s.z[i] - oz));
+            slope = sign * (out * s.r_by_t[i] + along * s.by_z[i]);
+        }
         const bool higher = value > h.value[i];
         h.value[i] = higher ? value : h.value[i];
+        h.slope[i] = higher ? slope : h.slope[i];
         h.face[i] = higher ? number : h.face[i];
     }
 }
@@ -110,9 +115,11 @@ PASSUNG_INLINE void takeFace(const Face& face, std::int64_t number, const Thread
 /// One place at a time.
 void takeOther(const Face& face, std::int64_t number, const ThreadSamples& s, ThreadHeights& h) noexcept {
     for (std::size_t i = 0; i <= s.pieces(); ++i) {
-        const double value = valueOf(face, {s.x[i], s.y[i], s.z[i]});
+        const Vec3 p(s.x[i], s.y[i], s.z[i]);
+        const double value = valueOf(face, p);
         if (!(value > h.value[i])) continue;
         h.value[i] = value;
+        h.slope[i] = gradientOf(face, p).dot(Vec3(s.by_x[i], s.by_y[i], s.by_z[i]));
         h.face[i] = number;
     }
 }
@@ -121,7 +128,8 @@ void takeOther(const Face& face, std::int64_t number, const ThreadSamples& s, Th
 PASSUNG_INLINE void takeFlank(const Face& flank, double reach, const ThreadSamples& s, ThreadHeights& h) noexcept {
     const double oz = flank.origin.z(), radius = flank.radius, out = flank.out, steep = std::abs(flank.along);
     const double pitch = flank.pitch, lead = pitch / (2.0 * std::numbers::pi), deep = steep * (0.25 * pitch);
-    const bool above = flank.along > 0.0;
+    const double rise = flank.along;
+    const bool above = rise > 0.0;
     const double before = std::min(reach, 0.0);
     // Nearer to the axis it is steeper, which matters amid material alone.
     const double least = reach < 0.0 ? flank.least : -std::numeric_limits<double>::infinity();
@@ -133,8 +141,12 @@ PASSUNG_INLINE void takeFlank(const Face& flank, double reach, const ThreadSampl
         const double known = std::min(steep * (0.75 * pitch - away), s.r[i] - least) + before, beside = h.value[i];
         const bool higher = !(value <= beside);
         const double low = std::max(std::min(value, known), outwards - deep);
+        const double across = s.by_z[i] - lead * s.phi_by_t[i];
+        const double slope = out * s.r_by_t[i] + rise * across;
         h.away[i] = away;
+        h.across[i] = across;
         h.value[i] = higher ? value : beside;
+        h.slope[i] = higher ? slope : h.slope[i];
         h.bound[i] = higher ? std::max(low, beside) : beside;
         h.face[i] = higher ? ThreadHeights::kFlank : h.face[i];
     }
@@ -144,6 +156,7 @@ PASSUNG_INLINE void takeHeights(const ThreadSamples& s, Faces others, const Face
                                 ThreadHeights& h) noexcept {
     for (std::size_t i = 0; i < kRoom; ++i) {
         h.value[i] = -std::numeric_limits<double>::infinity();
+        h.slope[i] = 0.0;
         h.face[i] = ThreadHeights::kFlank;
     }
     for (std::size_t k = 0; k < others.size(); ++k) {

@@ -37,8 +37,8 @@ public:
     ThreadPoint operator[](std::size_t i) const noexcept;
 
     // The first pieces() + 1 of each.
-    alignas(64) Row t{}, x{}, y{}, z{};           // [m]
-    alignas(64) Row by_x{}, by_y{}, by_z{};       // derivatives of these by t
+    alignas(64) Row t{}, x{}, y{}, z{};      // [m]
+    alignas(64) Row by_x{}, by_y{}, by_z{};  // derivatives of these by t
     alignas(64) Row r{}, phi{}, r_by_t{}, phi_by_t{};
 
 private:
@@ -51,14 +51,15 @@ private:
 struct ThreadHeights {
     using Row = ThreadSamples::Row;
 
-    alignas(64) Row value;                                     // of the highest face [m]
-    alignas(64) Row bound;                                     // below
-    alignas(64) Row away;                                      // from the flank's middle line: fromFlank() [m]
+    alignas(64) Row value, slope;  // of the highest face, and by t [m]
+    alignas(64) Row bound;         // below
+    alignas(64) Row away;          // from the flank's middle line: fromFlank() [m]
+    alignas(64) Row across;        // how the line goes along the axis, as ridges see it, by t [m]
     alignas(64) std::array<std::int64_t, ThreadSamples::kRoom> face;  // the highest one, among the others
     static constexpr std::int64_t kFlank = -1;
 
-    /// Of a flank, or none, and other faces. The function is above `reach` on all places that are less than `bound` less
-    /// `reach` away: where the next turn's flank begins to count it jumps. rt-safe.
+    /// Of a flank, or none, and other faces. The function is above `reach` on all places that are less than `bound`
+    /// less `reach` away: where the next turn's flank begins to count it jumps. rt-safe.
     void take(const ThreadSamples& samples, std::span<const Face* const> others, const Face* flank,
               double reach) noexcept;
     void take(const ThreadSamples& samples, std::span<const Face* const> others, const Face* flank, double reach,

@@ -107,8 +107,7 @@ Touch minimumBetween(const Walk& walk, SampleOn<Walk> low, SampleOn<Walk> high) 
         const double falls = walk.slope(*low.face, here.at), rises = walk.slope(*high.face, here.at);
         if (falls <= 0.0 && rises >= 0.0) {
             if (std::abs(walk.value(*high.face, here.at) - of_low) > kCrossed) break;
-            if (rises - falls <= 0.0)
-                return touchAt(Touch::Kind::Smooth, here.at, of_low, placeOf(lump, *low.face));
+            if (rises - falls <= 0.0) return touchAt(Touch::Kind::Smooth, here.at, of_low, placeOf(lump, *low.face));
             return kinkAt(here.at, of_low, placeOf(lump, *low.face), placeOf(lump, *high.face),
                           rises / (rises - falls));
         }
