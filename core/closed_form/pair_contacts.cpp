@@ -79,7 +79,7 @@ motion::Motion inWorld(const LineView& view, double rho, const motion::Motion& m
 /// faces. A place on it that something else would have to hold lies in the other part's way, but what touches there is
 /// another line: the edge's own row is implied by that one's, and where two edges are nearly parallel its normal is
 /// any. `line_q`: of the line's frame, in that of the gradient, against which would have to be between them.
-double leanOf(const Curve& own, const Touch& touch, const Place& at, const Quat& line_q,
+double leanOf(const Curve& own, const Touch& touch, const LinePlace& at, const Quat& line_q,
               const Vec3& gradient) noexcept {
     if (!own.sides || own.kind == Curve::Kind::Point) return 0.0;
     const Vec3 outward = Vec3(line_q.conjugate() * Vec3(-gradient)).normalized();
@@ -117,7 +117,7 @@ Contact contactOf(const SolidPair& pair, const LineView& view, const TouchName& 
     contact.name = name;
     contact.touch = touch;
     const std::vector<Face>& faces = lumpOf(pair, name).faces;
-    const Place at = touch.on(view.line);
+    const LinePlace at = touch.on(view.line);
     const Vec3 p = pointOf(view.line, at);
     const Jet of_a = slopedValueOf(faces[touch.a], p);
     Vec3 gradient = of_a.gradient;
@@ -147,7 +147,7 @@ struct OnLine {
     double by_t = 0.0, by_tt = 0.0;
 };
 
-OnLine derivativesOn(const LineView& view, const Face& face, const Place& at) noexcept {
+OnLine derivativesOn(const LineView& view, const Face& face, const LinePlace& at) noexcept {
     const Vec3 p = pointOf(view.line, at), slope = slopeOf(view.line, at), r = p - view.origin;
     const Jet jet = jetOf(face, p);
     const Vec3& g = jet.gradient;
@@ -174,7 +174,7 @@ OnLine derivativesOn(const LineView& view, const Face& face, const Place& at) no
 
 MotionMatrix curvatureInS(const LineView& view, const std::vector<Face>& faces, const Touch& touch,
                           bool slides) noexcept {
-    const Place at = touch.on(view.line);
+    const LinePlace at = touch.on(view.line);
     const OnLine a = derivativesOn(view, faces[touch.a], at);
     if (touch.b == Touch::kNone) {
         if (!slides || touch.kind != Touch::Kind::Smooth || !(a.by_tt > kLeastBend)) return a.by_uu;
@@ -209,15 +209,25 @@ struct PlacedPair {
           R_WH(X_WHeld.q.toRotationMatrix()),
           R_WO(of.X_WO.q.toRotationMatrix()) {}
 
-    LineView view(const TouchName& name) const noexcept {
+    /// The line's view is kept: the next one is mostly of the same line.
+    const LineView& view(const TouchName& name) noexcept {
         const Curve& line = lineOf(pair, name);
-        if (name.of_held) return {R_WO, pair.X_WO.p, moved(X_OH, line), X_OH.p, 1.0, X_OH.q};
-        return {R_WH, X_WH.p, moved(X_HO, line), Vec3::Zero(), -1.0, X_HO.q};
+        if (&line == seen) return last;
+        seen = &line;
+        if (name.of_held)
+            last = {R_WO, pair.X_WO.p, moved(X_OH, line), X_OH.p, 1.0, X_OH.q};
+        else
+            last = {R_WH, X_WH.p, moved(X_HO, line), Vec3::Zero(), -1.0, X_HO.q};
+        return last;
     }
 
     const SolidPair& pair;
     Pose X_WH, X_OH, X_HO;
     Mat3 R_WH, R_WO;
+
+private:
+    LineView last;
+    const Curve* seen = nullptr;  // whose view that is
 };
 
 ContactSearch::ContactSearch(const SolidPair& pair) : pair_(pair) {
@@ -256,7 +266,7 @@ double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contact
     moveTo(X_WH);
     contacts.clear();
     overlap_ = 0.0;
-    const PlacedPair placed(pair_, X_WH);
+    PlacedPair placed(pair_, X_WH);
     double least = std::numeric_limits<double>::infinity();
     for (Meeting& meeting : meetings_) {
         if (!(boundOf(meeting) > reach)) {
@@ -276,7 +286,7 @@ double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contact
 ContactSearch::Overlap ContactSearch::overlapAt(const Pose& X_WH) noexcept {
     constexpr double kRounding = 1e-12;  // [m] between a touch's gap and its contact's
     moveTo(X_WH);
-    const PlacedPair placed(pair_, X_WH);
+    PlacedPair placed(pair_, X_WH);
     Overlap overlap;
     const auto lookAt = [&](std::size_t at) {
         const Meeting& meeting = meetings_[at];
@@ -311,10 +321,10 @@ bool ContactSearch::isSampled(const Meeting& meeting) const noexcept {
 }
 
 template <class Take>
-void ContactSearch::look(const PlacedPair& placed, double reach, bool closely, Meeting& meeting, Take take) noexcept {
+void ContactSearch::look(PlacedPair& placed, double reach, bool closely, Meeting& meeting, Take take) noexcept {
     touches_.clear();
     const TouchName& name = meeting.name;
-    const LineView view = placed.view(name);
+    const LineView& view = placed.view(name);
     const Lump& lump = lumpOf(pair_, name);
     const LinePiece piece = pieceOf(view.line, meeting.piece);
     double closer = -std::numeric_limits<double>::infinity();

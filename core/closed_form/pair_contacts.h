@@ -92,7 +92,7 @@ private:
     double boundOf(const Meeting& meeting) const noexcept;
     /// `closely`: for a bound that saves more looks than it costs where few are near.
     template <class Take>
-    void look(const PlacedPair& placed, double reach, bool closely, Meeting& meeting, Take take) noexcept;
+    void look(PlacedPair& placed, double reach, bool closely, Meeting& meeting, Take take) noexcept;
     bool isSampled(const Meeting& meeting) const noexcept;
 
     SolidPair pair_;

@@ -334,12 +334,12 @@ std::optional<SmoothSolid> solidOf(const shape::Shape& shape) {
     return solid;
 }
 
-Place placeAt(const Curve& curve, double t) noexcept {
+LinePlace placeAt(const Curve& curve, double t) noexcept {
     if (curve.kind != Curve::Kind::Circle && curve.kind != Curve::Kind::Spiral) return {.t = t};
     return {t, std::cos(t), std::sin(t)};
 }
 
-Vec3 pointOf(const Curve& curve, const Place& at) noexcept {
+Vec3 pointOf(const Curve& curve, const LinePlace& at) noexcept {
     switch (curve.kind) {
         case Curve::Kind::Circle:
             return curve.centre + at.cosine * curve.e1 + at.sine * curve.e2;
@@ -354,7 +354,7 @@ Vec3 pointOf(const Curve& curve, const Place& at) noexcept {
     return curve.centre;
 }
 
-Vec3 slopeOf(const Curve& curve, const Place& at) noexcept {
+Vec3 slopeOf(const Curve& curve, const LinePlace& at) noexcept {
     switch (curve.kind) {
         case Curve::Kind::Circle:
             return at.cosine * curve.e2 - at.sine * curve.e1;
@@ -371,7 +371,7 @@ Vec3 slopeOf(const Curve& curve, const Place& at) noexcept {
     return Vec3::Zero();
 }
 
-Vec3 bendOf(const Curve& curve, const Place& at) noexcept {
+Vec3 bendOf(const Curve& curve, const LinePlace& at) noexcept {
     if (curve.kind == Curve::Kind::Spiral) {
         const double c = at.cosine, s = at.sine, t = at.t;
         return 2.0 * curve.widening * (c * curve.e2 - s * curve.e1) -
@@ -386,7 +386,7 @@ double fixedPlace(const Curve& circle, std::size_t i) noexcept {
     return -circle.end + piece * (kFixedEvery * static_cast<int>(i));
 }
 
-EdgeFrame frameOf(const Curve& edge, const Place& at) noexcept {
+EdgeFrame frameOf(const Curve& edge, const LinePlace& at) noexcept {
     const Vec3 p = pointOf(edge, at);
     EdgeFrame frame{.way = slopeOf(edge, at).normalized(),
                     .a = gradientOf((*edge.sides)[0], p),

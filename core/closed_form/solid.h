@@ -19,7 +19,7 @@ struct EdgeFrame {
 };
 
 /// A place on a line, of a circle and a spiral with what all that lies there is computed from.
-struct Place {
+struct LinePlace {
     double t = 0.0;
     double cosine = 0.0, sine = 0.0;  // of t
 };
@@ -80,10 +80,10 @@ struct SmoothSolid {
 std::optional<SmoothSolid> solidOf(const shape::Shape& shape);
 
 // rt-safe.
-Place placeAt(const Curve& curve, double t) noexcept;
-Vec3 pointOf(const Curve& curve, const Place& at) noexcept;
-Vec3 slopeOf(const Curve& curve, const Place& at) noexcept;  // dP/dt
-Vec3 bendOf(const Curve& curve, const Place& at) noexcept;   // d²P/dt²
+LinePlace placeAt(const Curve& curve, double t) noexcept;
+Vec3 pointOf(const Curve& curve, const LinePlace& at) noexcept;
+Vec3 slopeOf(const Curve& curve, const LinePlace& at) noexcept;  // dP/dt
+Vec3 bendOf(const Curve& curve, const LinePlace& at) noexcept;   // d²P/dt²
 inline Vec3 pointOf(const Curve& curve, double t) noexcept { return pointOf(curve, placeAt(curve, t)); }
 inline Vec3 slopeOf(const Curve& curve, double t) noexcept { return slopeOf(curve, placeAt(curve, t)); }
 
@@ -92,7 +92,7 @@ inline constexpr int kFixedEvery = 3;     // of those: where a point is looked a
 /// Parameter of the i-th place of a circle or an arc that is looked at wherever it lies.
 double fixedPlace(const Curve& circle, std::size_t i) noexcept;
 /// Of an edge with sides.
-EdgeFrame frameOf(const Curve& edge, const Place& at) noexcept;
+EdgeFrame frameOf(const Curve& edge, const LinePlace& at) noexcept;
 
 /// Rows of contacts farther away than this are not needed, because a look goes less far, and would be those of a
 /// thread's other flank [m]; infinite if it has no thread.

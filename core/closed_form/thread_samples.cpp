@@ -9,10 +9,8 @@ namespace passung::closed_form {
 
 namespace {
 
-using Row = ThreadSamples::Row;
 using Faces = std::span<const Face* const>;
 
-constexpr std::size_t kRoom = ThreadSamples::kRoom;
 constexpr double kTurnPiece = 2.0 * std::numbers::pi / ThreadSamples::kMost;  // of a spiral and a circle [rad]
 constexpr int kFewestPieces = 4;
 constexpr int kStraightPieces = 12;
@@ -20,10 +18,10 @@ constexpr double kLeastRadius = 1e-12;  // [m]
 
 /// Cosines and sines at the pieces of a turn.
 struct TurnDirections {
-    alignas(64) Row turned{}, cosine{}, sine{};
+    alignas(64) ThreadSamples::Row turned{}, cosine{}, sine{};
 
     TurnDirections() noexcept {
-        for (std::size_t i = 0; i < kRoom; ++i) {
+        for (std::size_t i = 0; i < ThreadSamples::kRoom; ++i) {
             turned[i] = kTurnPiece * static_cast<double>(i);
             cosine[i] = std::cos(turned[i]);
             sine[i] = std::sin(turned[i]);
@@ -50,7 +48,8 @@ struct Turn {
 PASSUNG_INLINE double sum(double a, double b, double c) noexcept { return (a + b) + c; }
 
 /// Where the spiral lies nearly about the axis, angles are those of its own t and a little more. How many do not.
-PASSUNG_INLINE std::int64_t takeTurn(const Curve& spiral, const Turn& turn, ThreadSamples& s, Row& far) noexcept {
+PASSUNG_INLINE std::int64_t takeTurn(const Curve& spiral, const Turn& turn, ThreadSamples& s,
+                                     ThreadSamples::Row& far) noexcept {
     const double cx = spiral.centre.x(), cy = spiral.centre.y(), cz = spiral.centre.z();
     const double ax = turn.e1.x(), ay = turn.e1.y(), az = turn.e1.z();
     const double bx = turn.e2.x(), by = turn.e2.y(), bz = turn.e2.z();
@@ -59,7 +58,7 @@ PASSUNG_INLINE std::int64_t takeTurn(const Curve& spiral, const Turn& turn, Thre
     const double begin = turn.begin, level = turn.level, first = turn.first;
     const bool upright = turn.upright;
     std::int64_t apart = 0;
-    for (std::size_t i = 0; i < kRoom; ++i) {
+    for (std::size_t i = 0; i < ThreadSamples::kRoom; ++i) {
         const double turned = kTurnDirections.turned[i], c = kTurnDirections.cosine[i], d = kTurnDirections.sine[i];
         const double t = begin + turned, radius = widest + widening * t, risen = climb * t;
         const double out_x = c * ax + d * bx, out_y = c * ay + d * by, out_z = c * az + d * bz;
@@ -93,7 +92,7 @@ PASSUNG_INLINE void takeFace(const Face& face, std::int64_t number, const Thread
     const double ox = face.origin.x(), oy = face.origin.y(), oz = face.origin.z();
     const double ax = face.axis.x(), ay = face.axis.y(), az = face.axis.z();
     const double radius = face.radius, along = face.along, out = face.out, sign = face.hollow ? -1.0 : 1.0;
-    for (std::size_t i = 0; i < kRoom; ++i) {
+    for (std::size_t i = 0; i < ThreadSamples::kRoom; ++i) {
         double value = 0.0, slope = 0.0;
         if constexpr (kKind == Face::Kind::Plane) {
             value = sum(ax * (s.x[i] - ox), ay * (s.y[i] - oy), az * (s.z[i] - oz));
@@ -133,7 +132,7 @@ PASSUNG_INLINE void takeFlank(const Face& flank, double reach, const ThreadSampl
     const double before = std::min(reach, 0.0);
     // Nearer to the axis it is steeper, which matters amid material alone.
     const double least = reach < 0.0 ? flank.least : -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < kRoom; ++i) {
+    for (std::size_t i = 0; i < ThreadSamples::kRoom; ++i) {
         const double up = s.z[i] - oz - lead * s.phi[i];
         const double from = above ? up : -up;
         const double away = from - pitch * std::floor(from / pitch + 0.25);
@@ -154,7 +153,7 @@ PASSUNG_INLINE void takeFlank(const Face& flank, double reach, const ThreadSampl
 
 PASSUNG_INLINE void takeHeights(const ThreadSamples& s, Faces others, const Face* flank, double reach,
                                 ThreadHeights& h) noexcept {
-    for (std::size_t i = 0; i < kRoom; ++i) {
+    for (std::size_t i = 0; i < ThreadSamples::kRoom; ++i) {
         h.value[i] = -std::numeric_limits<double>::infinity();
         h.slope[i] = 0.0;
         h.face[i] = ThreadHeights::kFlank;
@@ -177,16 +176,18 @@ PASSUNG_INLINE void takeHeights(const ThreadSamples& s, Faces others, const Face
         h.bound = h.value;
 }
 
-using TurnFunction = std::int64_t (*)(const Curve&, const Turn&, ThreadSamples&, Row&);
+using TurnFunction = std::int64_t (*)(const Curve&, const Turn&, ThreadSamples&, ThreadSamples::Row&);
 using HeightsFunction = void (*)(const ThreadSamples&, Faces, const Face*, double, ThreadHeights&);
 
-std::int64_t turnBaseline(const Curve& spiral, const Turn& turn, ThreadSamples& s, Row& far) noexcept {
+std::int64_t turnBaseline(const Curve& spiral, const Turn& turn, ThreadSamples& s, ThreadSamples::Row& far) noexcept {
     return takeTurn(spiral, turn, s, far);
 }
-PASSUNG_V3 std::int64_t turnV3(const Curve& spiral, const Turn& turn, ThreadSamples& s, Row& far) noexcept {
+PASSUNG_V3 std::int64_t turnV3(const Curve& spiral, const Turn& turn, ThreadSamples& s,
+                               ThreadSamples::Row& far) noexcept {
     return takeTurn(spiral, turn, s, far);
 }
-PASSUNG_V4 std::int64_t turnV4(const Curve& spiral, const Turn& turn, ThreadSamples& s, Row& far) noexcept {
+PASSUNG_V4 std::int64_t turnV4(const Curve& spiral, const Turn& turn, ThreadSamples& s,
+                               ThreadSamples::Row& far) noexcept {
     return takeTurn(spiral, turn, s, far);
 }
 void heightsBaseline(const ThreadSamples& s, Faces others, const Face* flank, double reach, ThreadHeights& h) noexcept {
@@ -221,7 +222,7 @@ const Instructions kBestInstructions = field::bestInstructions();
 ThreadPoint threadPoint(const Curve& line, double t) noexcept {
     ThreadPoint at;
     at.t = t;
-    const Place place = placeAt(line, t);
+    const LinePlace place = placeAt(line, t);
     at.p = pointOf(line, place);
     at.by_t = slopeOf(line, place);
     if (line.kind == Curve::Kind::Circle) {
@@ -278,7 +279,7 @@ void ThreadSamples::take(const Curve& line, const LinePiece& piece, field::Instr
         turn.level = std::sqrt(turn.e1.x() * turn.e1.x() + turn.e1.y() * turn.e1.y());
         turn.first = std::atan2(turn.e1.y(), turn.e1.x());
         turn.upright = line.e3.z() > 0.5;
-        alignas(64) Row far;
+        alignas(64) ThreadSamples::Row far;
         if (turnWith(instructions)(line, turn, *this, far) > 0)
             for (std::size_t i = 0; i < pieces_; ++i)
                 if (far[i] > 0.0) phi[i] = std::atan2(y[i], x[i]);

@@ -63,7 +63,7 @@ private:
 };
 
 double slopeOn(const Face& face, const Curve& line, double t) noexcept {
-    const Place at = placeAt(line, t);
+    const LinePlace at = placeAt(line, t);
     return gradientOf(face, pointOf(line, at)).dot(slopeOf(line, at));
 }
 
@@ -72,7 +72,7 @@ class Walk {
 public:
     static constexpr double kEnough = kClosed;
 
-    struct Point : Place {
+    struct Point : LinePlace {
         Vec3 p;
     };
 
@@ -83,7 +83,7 @@ public:
     const Highest& faces() const noexcept { return highest_; }
 
     Point at(double t) const noexcept {
-        const Place place = placeAt(line_, t);
+        const LinePlace place = placeAt(line_, t);
         return {place, pointOf(line_, place)};
     }
     double value(const Face& face, const Point& at) const noexcept { return valueOf(face, at.p); }
@@ -102,7 +102,7 @@ using Sample = SampleOn<Walk>;
 
 /// Places of whole circles at the samples.
 struct CirclePlaces {
-    std::array<Place, kCircleSamples + 1> all;
+    std::array<LinePlace, kCircleSamples + 1> all;
 
     CirclePlaces() noexcept {
         constexpr double kPiece = 2.0 * std::numbers::pi / kCircleSamples;

@@ -26,9 +26,9 @@ struct Touch {
 
     static constexpr std::uint8_t kNone = 255;
 
-    Place on(const Curve& line) const noexcept {
+    LinePlace on(const Curve& line) const noexcept {
         const bool known = line.kind == Curve::Kind::Circle && (cosine != 0.0 || sine != 0.0);
-        return known ? Place{t, cosine, sine} : placeAt(line, t);
+        return known ? LinePlace{t, cosine, sine} : placeAt(line, t);
     }
 };
 
