@@ -13,7 +13,7 @@ namespace passung::closed_form {
 /// Places on a whole circle, the last where the first is, each with the highest of some faces there, the value of its
 /// function and the slope of that by the circle's parameter.
 struct CircleSamples {
-    static constexpr std::size_t kPieces = 24;
+    static constexpr std::size_t kPieces = kCirclePieces;
     static constexpr std::size_t kRoom = 32;  // a multiple of what is computed at once
 
     template <class Number>

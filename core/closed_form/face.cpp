@@ -76,6 +76,7 @@ Face flank(double pitch, double radius, double middle, bool above, bool hollow, 
     face.along = scale * (above ? cosine : -cosine);
     face.out = scale * (hollow ? -0.5 : 0.5);
     face.pitch = pitch;
+    face.least = least;
     return face;
 }
 
@@ -95,12 +96,6 @@ double fromFlank(const Face& flank, double z, double phi) noexcept {
     const double up = z - flank.origin.z() - leadOf(flank) * phi;
     const double away = flank.along > 0.0 ? up : -up;
     return away - flank.pitch * std::floor(away / flank.pitch + 0.25);
-}
-
-double fromRidge(const Face& flank, double z, double phi) noexcept {
-    const double away = fromFlank(flank, z, phi) + 0.25 * flank.pitch;
-    const double nearest = away > 0.5 * flank.pitch ? away - flank.pitch : away;
-    return flank.along > 0.0 ? nearest : -nearest;
 }
 
 double beforeNextRidge(const Face& flank, double z, double phi) noexcept {
@@ -167,9 +162,25 @@ Vec3 gradientOf(const Face& face, const Vec3& p) noexcept {
     return gradientAt(face, p, hasAxis(face) ? aboutAxis(face, p) : AboutAxis{});
 }
 
+namespace {
+
+/// As valueOf().
+double valueAt(const Face& face, const Vec3& p, const AboutAxis& at) noexcept {
+    if (face.kind == Face::Kind::Cylinder) return signOf(face) * (at.r - face.radius);
+    if (face.kind == Face::Kind::Cone) return signOf(face) * (face.out * (at.r - face.radius) + face.along * at.z);
+    return valueOf(face, p);
+}
+
+}  // namespace
+
+Jet slopedValueOf(const Face& face, const Vec3& p) noexcept {
+    const AboutAxis at = hasAxis(face) ? aboutAxis(face, p) : AboutAxis{};
+    return {.value = valueAt(face, p, at), .gradient = gradientAt(face, p, at)};
+}
+
 Jet jetOf(const Face& face, const Vec3& p) noexcept {
     const AboutAxis at = hasAxis(face) ? aboutAxis(face, p) : AboutAxis{};
-    Jet jet{.value = valueOf(face, p), .gradient = gradientAt(face, p, at)};
+    Jet jet{.value = valueAt(face, p, at), .gradient = gradientAt(face, p, at)};
     switch (face.kind) {
         case Face::Kind::Plane:
             break;

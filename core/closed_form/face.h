@@ -22,6 +22,7 @@ struct Face {
     double tube = 0.0;              // of a torus: radius of its tube [m]
     double along = 0.0, out = 1.0;  // of a cone, a helicoid: parts of the gradient along the axis and away from it
     double pitch = 0.0;             // of a helicoid [m]
+    double least = 0.0;             // of a helicoid: radius from which on the gradient is at most 1 long [m]
     bool hollow = false;
     bool about_z = false;  // its axis is the z axis
 
@@ -45,8 +46,6 @@ Face flank(double pitch, double radius, double middle, bool above, bool hollow, 
 // Of a flank at a height and an angle about the axis. rt-safe.
 /// From its middle line, outwards along the axis: from the middle of its ridge to that of the next [m].
 double fromFlank(const Face& flank, double z, double phi) noexcept;
-/// From the middle of the nearest ridge, positive above [m].
-double fromRidge(const Face& flank, double z, double phi) noexcept;
 /// A way that the point does not go before the flank of another turn counts [m].
 double beforeNextRidge(const Face& flank, double z, double phi) noexcept;
 
@@ -61,6 +60,8 @@ struct Jet {
 // the curvature about the axis is left out. rt-safe.
 double valueOf(const Face& face, const Vec3& p) noexcept;
 Vec3 gradientOf(const Face& face, const Vec3& p) noexcept;
+/// The bits of both, for less than each of them costs. The hessian is left out.
+Jet slopedValueOf(const Face& face, const Vec3& p) noexcept;
 Jet jetOf(const Face& face, const Vec3& p) noexcept;
 
 }  // namespace passung::closed_form

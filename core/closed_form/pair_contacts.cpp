@@ -78,12 +78,14 @@ motion::Motion inWorld(const LineView& view, double rho, const motion::Motion& m
 /// An edge of a convex piece touches with normals between those of its two sides, its end with those between three
 /// faces. A place on it that something else would have to hold lies in the other part's way, but what touches there is
 /// another line: the edge's own row is implied by that one's, and where two edges are nearly parallel its normal is
-/// any. `outward`: what would have to be between them, in the line's frame.
-double leanOf(const Curve& own, const Touch& touch, const Vec3& outward) noexcept {
+/// any. `line_q`: of the line's frame, in that of the gradient, against which would have to be between them.
+double leanOf(const Curve& own, const Touch& touch, const LinePlace& at, const Quat& line_q,
+              const Vec3& gradient) noexcept {
     if (!own.sides || own.kind == Curve::Kind::Point) return 0.0;
-    const Vec3 p = pointOf(own, touch.t), t = slopeOf(own, touch.t).normalized();
-    const Vec3 a = gradientOf((*own.sides)[0], p), b = gradientOf((*own.sides)[1], p);
-    const double turn = a.cross(b).dot(t);
+    const Vec3 outward = Vec3(line_q.conjugate() * Vec3(-gradient)).normalized();
+    const EdgeFrame frame = touch.fixed < own.fixed.size() ? own.fixed[touch.fixed] : frameOf(own, at);
+    const Vec3 &t = frame.way, &a = frame.a, &b = frame.b;
+    const double turn = frame.turn;
     Vec3 n = outward, c = t;
     double beyond = 0.0;  // of the third face
     if (own.kind == Curve::Kind::Straight && touch.kind == Touch::Kind::Fixed) {
@@ -91,7 +93,7 @@ double leanOf(const Curve& own, const Touch& touch, const Vec3& outward) noexcep
         const std::optional<Face>& cap = own.caps[low ? 0 : 1];
         if (at_end && !cap) return 0.0;
         if (at_end) {
-            c = gradientOf(*cap, p);
+            c = gradientOf(*cap, pointOf(own, at));
             beyond = -t.dot(n) / t.dot(c);
         }
     }
@@ -101,27 +103,39 @@ double leanOf(const Curve& own, const Touch& touch, const Vec3& outward) noexcep
     return std::max({0.0, -alpha * std::abs(turn), -beta * std::abs(turn), beyond});
 }
 
-Contact contactOf(const SolidPair& pair, const LineView& view, const TouchName& name, const Touch& touch) noexcept {
+double gapOf(const LineView& view, const std::vector<Face>& faces, const Touch& touch) noexcept {
+    const Vec3 p = pointOf(view.line, touch.on(view.line));
+    double gap = valueOf(faces[touch.a], p);
+    if (touch.b != Touch::kNone) gap = touch.share * gap + (1.0 - touch.share) * valueOf(faces[touch.b], p);
+    return gap - view.line.thickness;
+}
+
+/// Of one that leans more than `most_lean` gap and lean alone.
+Contact contactOf(const SolidPair& pair, const LineView& view, const TouchName& name, const Touch& touch,
+                  double most_lean) noexcept {
     Contact contact;
     contact.name = name;
     contact.touch = touch;
     const std::vector<Face>& faces = lumpOf(pair, name).faces;
-    const Vec3 p = pointOf(view.line, touch.t);
-    Vec3 gradient = gradientOf(faces[touch.a], p);
-    contact.gap = valueOf(faces[touch.a], p);
+    const LinePlace at = touch.on(view.line);
+    const Vec3 p = pointOf(view.line, at);
+    const Jet of_a = slopedValueOf(faces[touch.a], p);
+    Vec3 gradient = of_a.gradient;
+    contact.gap = of_a.value;
     if (touch.b != Touch::kNone) {
-        gradient = touch.share * gradient + (1.0 - touch.share) * gradientOf(faces[touch.b], p);
-        contact.gap = touch.share * contact.gap + (1.0 - touch.share) * valueOf(faces[touch.b], p);
+        const Jet of_b = slopedValueOf(faces[touch.b], p);
+        gradient = touch.share * gradient + (1.0 - touch.share) * of_b.gradient;
+        contact.gap = touch.share * contact.gap + (1.0 - touch.share) * of_b.value;
     }
     contact.gap -= view.line.thickness;
+    if (!name.core) {
+        const SmoothSolid& lines = name.of_held ? *pair.held : *pair.obstacle;
+        contact.lean = leanOf(lines.edges[name.line], touch, at, view.line_q, gradient);
+        if (contact.lean > most_lean) return contact;
+    }
     contact.point = view.R_WS * p + view.p_WS;
     contact.normal = view.R_WS * (view.sign * gradient);
     contact.a = inWorld(view, pair.metric_radius, slopeBy(view, p - view.origin, gradient));
-    if (!name.core) {
-        const SmoothSolid& lines = name.of_held ? *pair.held : *pair.obstacle;
-        const Vec3 outward = view.line_q.conjugate() * Vec3(-gradient);
-        contact.lean = leanOf(lines.edges[name.line], touch, outward.normalized());
-    }
     return contact;
 }
 
@@ -133,8 +147,8 @@ struct OnLine {
     double by_t = 0.0, by_tt = 0.0;
 };
 
-OnLine derivativesOn(const LineView& view, const Face& face, double t) noexcept {
-    const Vec3 p = pointOf(view.line, t), slope = slopeOf(view.line, t), r = p - view.origin;
+OnLine derivativesOn(const LineView& view, const Face& face, const LinePlace& at) noexcept {
+    const Vec3 p = pointOf(view.line, at), slope = slopeOf(view.line, at), r = p - view.origin;
     const Jet jet = jetOf(face, p);
     const Vec3& g = jet.gradient;
     const Mat3& K = jet.hessian;
@@ -154,18 +168,19 @@ OnLine derivativesOn(const LineView& view, const Face& face, double t) noexcept 
     const Vec3 Kc = K * slope;
     d.by_tu << view.sign * Kc, view.sign * (r.cross(Kc) + slope.cross(g));
     d.by_t = g.dot(slope);
-    d.by_tt = slope.dot(Kc) + g.dot(bendOf(view.line, t));
+    d.by_tt = slope.dot(Kc) + g.dot(bendOf(view.line, at));
     return d;
 }
 
 MotionMatrix curvatureInS(const LineView& view, const std::vector<Face>& faces, const Touch& touch,
                           bool slides) noexcept {
-    const OnLine a = derivativesOn(view, faces[touch.a], touch.t);
+    const LinePlace at = touch.on(view.line);
+    const OnLine a = derivativesOn(view, faces[touch.a], at);
     if (touch.b == Touch::kNone) {
         if (!slides || touch.kind != Touch::Kind::Smooth || !(a.by_tt > kLeastBend)) return a.by_uu;
         return a.by_uu - a.by_tu * a.by_tu.transpose() / a.by_tt;
     }
-    const OnLine b = derivativesOn(view, faces[touch.b], touch.t);
+    const OnLine b = derivativesOn(view, faces[touch.b], at);
     const double mu = touch.share, nu = 1.0 - mu;
     MotionMatrix H = mu * a.by_uu + nu * b.by_uu;
     const double cross = a.by_t - b.by_t;
@@ -194,15 +209,25 @@ struct PlacedPair {
           R_WH(X_WHeld.q.toRotationMatrix()),
           R_WO(of.X_WO.q.toRotationMatrix()) {}
 
-    LineView view(const TouchName& name) const noexcept {
+    /// The line's view is kept: the next one is mostly of the same line.
+    const LineView& view(const TouchName& name) noexcept {
         const Curve& line = lineOf(pair, name);
-        if (name.of_held) return {R_WO, pair.X_WO.p, moved(X_OH, line), X_OH.p, 1.0, X_OH.q};
-        return {R_WH, X_WH.p, moved(X_HO, line), Vec3::Zero(), -1.0, X_HO.q};
+        if (&line == seen) return last;
+        seen = &line;
+        if (name.of_held)
+            last = {R_WO, pair.X_WO.p, moved(X_OH, line), X_OH.p, 1.0, X_OH.q};
+        else
+            last = {R_WH, X_WH.p, moved(X_HO, line), Vec3::Zero(), -1.0, X_HO.q};
+        return last;
     }
 
     const SolidPair& pair;
     Pose X_WH, X_OH, X_HO;
     Mat3 R_WH, R_WO;
+
+private:
+    LineView last;
+    const Curve* seen = nullptr;  // whose view that is
 };
 
 ContactSearch::ContactSearch(const SolidPair& pair) : pair_(pair) {
@@ -237,16 +262,20 @@ void ContactSearch::moveTo(const Pose& X_WH) noexcept {
     sampled_ = nullptr;
 }
 
-double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept {
+double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contacts, double most_lean) noexcept {
     moveTo(X_WH);
     contacts.clear();
-    const PlacedPair placed(pair_, X_WH);
+    overlap_ = 0.0;
+    PlacedPair placed(pair_, X_WH);
     double least = std::numeric_limits<double>::infinity();
     for (Meeting& meeting : meetings_) {
         if (!(boundOf(meeting) > reach)) {
-            Touches touches;
-            look(placed, reach, false, meeting, touches, [&](const Contact& contact) { contacts.add(contact); });
-            if (touches.full()) contacts.setFull();
+            look(placed, reach, false, meeting, [&](const LineView& view, const Touch& touch) {
+                const Contact contact = contactOf(pair_, view, meeting.name, touch, most_lean);
+                overlap_ = std::max(overlap_, -contact.gap);
+                if (!(contact.lean > most_lean)) contacts.add(contact);
+            });
+            if (touches_.full()) contacts.setFull();
         }
         least = std::min(least, boundOf(meeting));
     }
@@ -257,18 +286,19 @@ double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contact
 ContactSearch::Overlap ContactSearch::overlapAt(const Pose& X_WH) noexcept {
     constexpr double kRounding = 1e-12;  // [m] between a touch's gap and its contact's
     moveTo(X_WH);
-    const PlacedPair placed(pair_, X_WH);
+    PlacedPair placed(pair_, X_WH);
     Overlap overlap;
     const auto lookAt = [&](std::size_t at) {
-        const double reach = meetings_[at].of_thread ? 0.0 : std::min(0.0, kRounding - overlap.depth);
-        if (!meetings_[at].touches || boundOf(meetings_[at]) > reach) return;
-        Touches touches;
-        look(placed, reach, true, meetings_[at], touches, [&](const Contact& contact) {
-            if (!(-contact.gap > overlap.depth)) return;
-            overlap.depth = -contact.gap;
+        const Meeting& meeting = meetings_[at];
+        const double reach = std::min(0.0, kRounding - overlap.depth);
+        if (!meeting.touches || boundOf(meeting) > (meeting.of_thread ? std::max(reach, meeting.reach) : reach)) return;
+        look(placed, reach, true, meetings_[at], [&](const LineView& view, const Touch& touch) {
+            const double gap = gapOf(view, lumpOf(pair_, meetings_[at].name).faces, touch);
+            if (!(-gap > overlap.depth)) return;
+            overlap.depth = -gap;
             deepest_ = at;
         });
-        overlap.full = overlap.full || touches.full();
+        overlap.full = overlap.full || touches_.full();
     };
     const std::size_t first = deepest_;
     if (first < meetings_.size()) lookAt(first);
@@ -291,26 +321,27 @@ bool ContactSearch::isSampled(const Meeting& meeting) const noexcept {
 }
 
 template <class Take>
-void ContactSearch::look(const PlacedPair& placed, double reach, bool closely, Meeting& meeting, Touches& touches,
-                         Take take) noexcept {
+void ContactSearch::look(PlacedPair& placed, double reach, bool closely, Meeting& meeting, Take take) noexcept {
+    touches_.clear();
     const TouchName& name = meeting.name;
-    const LineView view = placed.view(name);
+    const LineView& view = placed.view(name);
     const Lump& lump = lumpOf(pair_, name);
     const LinePiece piece = pieceOf(view.line, meeting.piece);
     double closer = -std::numeric_limits<double>::infinity();
     if (meeting.of_thread) {
         if (!isSampled(meeting)) samples_.take(view.line, piece);
         sampled_ = &meeting;
-        meeting.bound = searchAlongThread(view.line, piece, samples_, lump, reach, touches);
+        meeting.bound = searchAlongThread(view.line, piece, samples_, lump, reach, touches_);
     } else {
-        meeting.bound = name.core ? searchCore(view.line, lump, reach, touches)
-                                  : searchEdge(view.line, lump, reach, touches, closely ? &closer : nullptr);
+        meeting.bound = name.core ? searchCore(view.line, lump, reach, touches_)
+                                  : searchEdge(view.line, lump, reach, touches_, closely ? &closer : nullptr);
     }
     meeting.bound = std::max(meeting.bound, closer);
+    meeting.reach = std::min(reach, 0.0);
     meeting.lever = (piece.middle - view.origin).norm() + piece.extent;
     meeting.way = way_;
     meeting.turn = turn_;
-    for (const Touch& touch : touches.all()) take(contactOf(pair_, view, name, touch));
+    for (const Touch& touch : touches_.all()) take(view, touch);
 }
 
 std::optional<Contact> keptAt(const SolidPair& pair, const Pose& X_WH, const Contact& contact) noexcept {
@@ -318,7 +349,7 @@ std::optional<Contact> keptAt(const SolidPair& pair, const Pose& X_WH, const Con
     constexpr double kSameNormal = 0.005;  // [rad]
     const LineView view = viewOf(pair, X_WH, contact.name);
     const Lump& lump = lumpOf(pair, contact.name);
-    const Vec3 p = pointOf(view.line, contact.touch.t);
+    const Vec3 p = pointOf(view.line, contact.touch.on(view.line));
     Touch touch = contact.touch;
     if (touch.b != Touch::kNone) {
         if (valueOf(lump.faces[touch.b], p) > valueOf(lump.faces[touch.a], p)) touch.a = touch.b;
@@ -327,7 +358,7 @@ std::optional<Contact> keptAt(const SolidPair& pair, const Pose& X_WH, const Con
         touch.kind = Touch::Kind::Fixed;
     }
     if (valueOf(lump, p) > valueOf(lump.faces[touch.a], p) + kEqual) return std::nullopt;
-    const Contact now = contactOf(pair, view, contact.name, touch);
+    const Contact now = contactOf(pair, view, contact.name, touch, std::numeric_limits<double>::infinity());
     if (contact.touch.b != Touch::kNone && (now.normal - contact.normal).norm() > kSameNormal) return std::nullopt;
     return now;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -58,9 +59,12 @@ public:
 
     const SolidPair& pair() const noexcept { return pair_; }
 
-    /// All contacts with a gap of at most `reach`. Returns a way that no point of the held part has to go before the
-    /// parts touch [m], proven where it is > 0. rt-safe.
-    double find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept;
+    /// All contacts with a gap of at most `reach` and a lean of at most `most_lean`. Returns a way that no point of the
+    /// held part has to go before the parts touch [m], proven where it is > 0. rt-safe.
+    double find(const Pose& X_WH, double reach, PairContacts& contacts,
+                double most_lean = std::numeric_limits<double>::infinity()) noexcept;
+    /// The most that any contact overlapped there, however it leant [m], ≥ 0.
+    double foundOverlap() const noexcept { return overlap_; }
 
     struct Overlap {
         double depth = 0.0;  // the most that any contact overlaps [m], ≥ 0
@@ -78,6 +82,7 @@ private:
         bool of_thread = false;
         bool touches = true;           // false: of no contact, of the bound alone
         double bound = 0.0;            // of the gap, when it was looked at last [m]
+        double reach = 0.0;            // that was looked for then: of a thread a bound says nothing of lower ones [m]
         double lever = 0.0;            // of the line's points about the held part's origin, then [m]
         double way = 0.0, turn = 0.0;  // of the held part, until then
     };
@@ -87,14 +92,15 @@ private:
     double boundOf(const Meeting& meeting) const noexcept;
     /// `closely`: for a bound that saves more looks than it costs where few are near.
     template <class Take>
-    void look(const PlacedPair& placed, double reach, bool closely, Meeting& meeting, Touches& touches,
-              Take take) noexcept;
+    void look(PlacedPair& placed, double reach, bool closely, Meeting& meeting, Take take) noexcept;
     bool isSampled(const Meeting& meeting) const noexcept;
 
     SolidPair pair_;
     std::vector<Meeting> meetings_;
     std::size_t deepest_ = 0;  // meeting of the last overlap
     Pose X_last_;
+    double overlap_ = 0.0;
+    Touches touches_;  // of the last look
     ThreadSamples samples_;
     const Meeting* sampled_ = nullptr;  // whose line's piece they are of, at this pose
     double way_ = 0.0, turn_ = 0.0;     // that the held part has made [m], [rad]

@@ -63,13 +63,12 @@ void PoseSolver::find(const Pose& X) noexcept {
     free_ = std::numeric_limits<double>::infinity();
     full_ = false;
     for (std::size_t p = 0; p < searches_.size(); ++p) {
-        free_ = std::min(free_, searches_[p].find(X, sight_, contacts_));
-        overlap_ = std::max(overlap_, overlapOf(contacts_));
+        free_ = std::min(free_, searches_[p].find(X, sight_, contacts_, kMostLean));
+        overlap_ = std::max(overlap_, searches_[p].foundOverlap());
         full_ = full_ || contacts_.full();
         for (const Contact& contact : contacts_.all())
-            if (contact.lean <= kMostLean)
-                add({.from = {.contact = contact, .pair = static_cast<std::uint16_t>(p)},
-                     .slides = contact.touch.kind != Touch::Kind::Fixed});
+            add({.from = {.contact = contact, .pair = static_cast<std::uint16_t>(p)},
+                 .slides = contact.touch.kind != Touch::Kind::Fixed});
     }
     found_ = count_;
 }

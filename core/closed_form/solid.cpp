@@ -312,6 +312,9 @@ void nameFaces(const Lump& lump, Curve& edge) {
         if (isOn(face, -0.9) && isOn(face, 0.1) && isOn(face, 0.8)) sides.push_back(face);
     if (edge.sides || sides.size() != 2 || valueOf(lump, pointOf(edge, 0.1 * edge.end)) > kConicOnFace) return;
     edge.sides = std::array{sides[0], sides[1]};
+    if (edge.kind == Curve::Kind::Circle)
+        for (std::size_t i = 0; i <= kCirclePieces / kFixedEvery; ++i)
+            edge.fixed.push_back(frameOf(edge, placeAt(edge, fixedPlace(edge, i))));
     if (edge.kind != Curve::Kind::Straight) return;
     for (const double end : {-1.0, 1.0}) {
         std::vector<Face> caps;
@@ -331,30 +334,34 @@ std::optional<SmoothSolid> solidOf(const shape::Shape& shape) {
     return solid;
 }
 
-Vec3 pointOf(const Curve& curve, double t) noexcept {
+LinePlace placeAt(const Curve& curve, double t) noexcept {
+    if (curve.kind != Curve::Kind::Circle && curve.kind != Curve::Kind::Spiral) return {.t = t};
+    return {t, std::cos(t), std::sin(t)};
+}
+
+Vec3 pointOf(const Curve& curve, const LinePlace& at) noexcept {
     switch (curve.kind) {
         case Curve::Kind::Circle:
-            return curve.centre + std::cos(t) * curve.e1 + std::sin(t) * curve.e2;
+            return curve.centre + at.cosine * curve.e1 + at.sine * curve.e2;
         case Curve::Kind::Straight:
-            return curve.centre + t * curve.e1;
+            return curve.centre + at.t * curve.e1;
         case Curve::Kind::Spiral:
-            return curve.centre +
-                   (curve.radius + curve.widening * t) * (std::cos(t) * curve.e1 + std::sin(t) * curve.e2) +
-                   curve.climb * t * curve.e3;
+            return curve.centre + (curve.radius + curve.widening * at.t) * (at.cosine * curve.e1 + at.sine * curve.e2) +
+                   curve.climb * at.t * curve.e3;
         case Curve::Kind::Point:
             break;
     }
     return curve.centre;
 }
 
-Vec3 slopeOf(const Curve& curve, double t) noexcept {
+Vec3 slopeOf(const Curve& curve, const LinePlace& at) noexcept {
     switch (curve.kind) {
         case Curve::Kind::Circle:
-            return std::cos(t) * curve.e2 - std::sin(t) * curve.e1;
+            return at.cosine * curve.e2 - at.sine * curve.e1;
         case Curve::Kind::Straight:
             return curve.e1;
         case Curve::Kind::Spiral: {
-            const double c = std::cos(t), s = std::sin(t);
+            const double c = at.cosine, s = at.sine, t = at.t;
             return curve.widening * (c * curve.e1 + s * curve.e2) +
                    (curve.radius + curve.widening * t) * (c * curve.e2 - s * curve.e1) + curve.climb * curve.e3;
         }
@@ -364,14 +371,28 @@ Vec3 slopeOf(const Curve& curve, double t) noexcept {
     return Vec3::Zero();
 }
 
-Vec3 bendOf(const Curve& curve, double t) noexcept {
+Vec3 bendOf(const Curve& curve, const LinePlace& at) noexcept {
     if (curve.kind == Curve::Kind::Spiral) {
-        const double c = std::cos(t), s = std::sin(t);
+        const double c = at.cosine, s = at.sine, t = at.t;
         return 2.0 * curve.widening * (c * curve.e2 - s * curve.e1) -
                (curve.radius + curve.widening * t) * (c * curve.e1 + s * curve.e2);
     }
     if (curve.kind != Curve::Kind::Circle) return Vec3::Zero();
-    return -std::cos(t) * curve.e1 - std::sin(t) * curve.e2;
+    return -at.cosine * curve.e1 - at.sine * curve.e2;
+}
+
+double fixedPlace(const Curve& circle, std::size_t i) noexcept {
+    const double piece = 2.0 * circle.end / kCirclePieces;
+    return -circle.end + piece * (kFixedEvery * static_cast<int>(i));
+}
+
+EdgeFrame frameOf(const Curve& edge, const LinePlace& at) noexcept {
+    const Vec3 p = pointOf(edge, at);
+    EdgeFrame frame{.way = slopeOf(edge, at).normalized(),
+                    .a = gradientOf((*edge.sides)[0], p),
+                    .b = gradientOf((*edge.sides)[1], p)};
+    frame.turn = frame.a.cross(frame.b).dot(frame.way);
+    return frame;
 }
 
 std::size_t piecesOf(const Curve& line) noexcept {
@@ -389,11 +410,6 @@ LinePiece pieceOf(const Curve& line, std::size_t i) noexcept {
     piece.extent = std::hypot(widest, half * line.climb);
     piece.speed = std::sqrt(widest * widest + line.widening * line.widening + line.climb * line.climb);
     return piece;
-}
-
-double apartOn(const Curve& curve, double s, double t) noexcept {
-    const double d = std::abs(s - t);
-    return curve.isClosed() ? std::min(d, 2.0 * std::numbers::pi - d) : d;
 }
 
 double valueOf(const Lump& lump, const Vec3& p) noexcept {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -8,6 +11,18 @@
 #include "core/shape/shape.h"
 
 namespace passung::closed_form {
+
+/// An edge at a place of it: its direction, the gradients of its two sides, and how these turn about it.
+struct EdgeFrame {
+    Vec3 way, a, b;
+    double turn = 0.0;
+};
+
+/// A place on a line, of a circle and a spiral with what all that lies there is computed from.
+struct LinePlace {
+    double t = 0.0;
+    double cosine = 0.0, sine = 0.0;  // of t
+};
 
 /// A line of a solid: a straight piece, a circle or an arc of one, a spiral, or a point. P(t), t from -end to end, is
 /// centre + cos t e1 + sin t e2, t in radians, of a circle; centre + t e1 of a straight piece; of a spiral, t from
@@ -26,6 +41,7 @@ struct Curve {
     // Of a spiral: [m], [m/rad], unit vectors.
     double begin = 0.0, radius = 0.0, widening = 0.0, climb = 0.0;
     Vec3 e3 = Vec3::Zero();
+    std::vector<EdgeFrame> fixed = {};  // of a circle with sides: at fixedPlace(0), fixedPlace(1), ...
 
     /// No point of it is farther from the centre [m]; of no spiral.
     double extent() const noexcept { return kind == Kind::Point ? 0.0 : e1.norm(); }
@@ -64,9 +80,19 @@ struct SmoothSolid {
 std::optional<SmoothSolid> solidOf(const shape::Shape& shape);
 
 // rt-safe.
-Vec3 pointOf(const Curve& curve, double t) noexcept;
-Vec3 slopeOf(const Curve& curve, double t) noexcept;  // dP/dt
-Vec3 bendOf(const Curve& curve, double t) noexcept;   // d²P/dt²
+LinePlace placeAt(const Curve& curve, double t) noexcept;
+Vec3 pointOf(const Curve& curve, const LinePlace& at) noexcept;
+Vec3 slopeOf(const Curve& curve, const LinePlace& at) noexcept;  // dP/dt
+Vec3 bendOf(const Curve& curve, const LinePlace& at) noexcept;   // d²P/dt²
+inline Vec3 pointOf(const Curve& curve, double t) noexcept { return pointOf(curve, placeAt(curve, t)); }
+inline Vec3 slopeOf(const Curve& curve, double t) noexcept { return slopeOf(curve, placeAt(curve, t)); }
+
+inline constexpr int kCirclePieces = 24;  // between samples of a circle or an arc
+inline constexpr int kFixedEvery = 3;     // of those: where a point is looked at wherever the circle lies
+/// Parameter of the i-th place of a circle or an arc that is looked at wherever it lies.
+double fixedPlace(const Curve& circle, std::size_t i) noexcept;
+/// Of an edge with sides.
+EdgeFrame frameOf(const Curve& edge, const LinePlace& at) noexcept;
 
 /// Rows of contacts farther away than this are not needed, because a look goes less far, and would be those of a
 /// thread's other flank [m]; infinite if it has no thread.
@@ -76,7 +102,10 @@ double sightOf(const SmoothSolid& solid) noexcept;
 bool isThread(const SmoothSolid& solid) noexcept;
 
 /// How far two places of the line are apart, by t; round a whole circle the shorter way.
-double apartOn(const Curve& curve, double s, double t) noexcept;
+inline double apartOn(const Curve& curve, double s, double t) noexcept {
+    const double d = std::abs(s - t);
+    return curve.isClosed() ? std::min(d, 2.0 * std::numbers::pi - d) : d;
+}
 
 /// The largest function of the lump's faces: how far the point is outside, exact beside a face, too small beside an
 /// edge.

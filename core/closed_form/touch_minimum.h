@@ -13,9 +13,23 @@ namespace passung::closed_form {
 
 inline constexpr int kSteps = 60;         // to close a bracket
 inline constexpr double kClosed = 1e-10;  // of a line's parameter
+inline constexpr double kCrossed = 1e-8;  // [m]: faces that are farther apart do not cross there, one of them jumps
 
 inline std::uint8_t placeOf(const Lump& lump, const Face& face) noexcept {
     return static_cast<std::uint8_t>(&face - lump.faces.data());
+}
+
+template <class Point>
+Touch touchAt(Touch::Kind kind, const Point& at, double gap, std::uint8_t face) noexcept {
+    return {.kind = kind, .t = at.t, .gap = gap, .a = face, .cosine = at.cosine, .sine = at.sine};
+}
+
+template <class Point>
+Touch kinkAt(const Point& at, double gap, std::uint8_t a, std::uint8_t b, double share) noexcept {
+    Touch kink = touchAt(Touch::Kind::Kink, at, gap, a);
+    kink.b = b;
+    kink.share = share;
+    return kink;
 }
 
 /// A place on the line, with the highest face there.
@@ -89,24 +103,20 @@ Touch minimumBetween(const Walk& walk, SampleOn<Walk> low, SampleOn<Walk> high) 
             (here.slope < 0.0 ? low : high) = here;  // a third face
             continue;
         }
-        if (one_face) return {.kind = Touch::Kind::Smooth, .t = t, .gap = of_low, .a = placeOf(lump, *low.face)};
+        if (one_face) return touchAt(Touch::Kind::Smooth, here.at, of_low, placeOf(lump, *low.face));
         const double falls = walk.slope(*low.face, here.at), rises = walk.slope(*high.face, here.at);
         if (falls <= 0.0 && rises >= 0.0) {
-            if (rises - falls <= 0.0)
-                return {.kind = Touch::Kind::Smooth, .t = t, .gap = of_low, .a = placeOf(lump, *low.face)};
-            return {.kind = Touch::Kind::Kink,
-                    .t = t,
-                    .gap = of_low,
-                    .a = placeOf(lump, *low.face),
-                    .b = placeOf(lump, *high.face),
-                    .share = rises / (rises - falls)};
+            if (std::abs(walk.value(*high.face, here.at) - of_low) > kCrossed) break;
+            if (rises - falls <= 0.0) return touchAt(Touch::Kind::Smooth, here.at, of_low, placeOf(lump, *low.face));
+            return kinkAt(here.at, of_low, placeOf(lump, *low.face), placeOf(lump, *high.face),
+                          rises / (rises - falls));
         }
         if (falls > 0.0)
             high = {of_low, falls, low.face, here.at};
         else
             low = {of_low, rises, high.face, here.at};
     }
-    return {.kind = Touch::Kind::Fixed, .t = here.at.t, .gap = here.value, .a = placeOf(lump, *here.face)};
+    return touchAt(Touch::Kind::Fixed, here.at, here.value, placeOf(lump, *here.face));
 }
 
 inline bool isBeside(const Touches& touches, const Curve& line, double t) noexcept {
@@ -117,10 +127,12 @@ inline bool isBeside(const Touches& touches, const Curve& line, double t) noexce
 }
 
 template <class Walk>
-void addFixed(const Walk& walk, const SampleOn<Walk>& sample, double reach, Touches& touches) noexcept {
+void addFixed(const Walk& walk, const SampleOn<Walk>& sample, double reach, Touches& touches,
+              std::uint8_t fixed = Touch::kNone) noexcept {
     if (sample.value > reach || isBeside(touches, walk.line(), sample.at.t)) return;
-    touches.add(
-        {.kind = Touch::Kind::Fixed, .t = sample.at.t, .gap = sample.value, .a = placeOf(walk.lump(), *sample.face)});
+    Touch touch = touchAt(Touch::Kind::Fixed, sample.at, sample.value, placeOf(walk.lump(), *sample.face));
+    touch.fixed = fixed;
+    touches.add(touch);
 }
 
 }  // namespace passung::closed_form

@@ -14,7 +14,7 @@ namespace passung::closed_form {
 
 namespace {
 
-constexpr int kCircleSamples = CircleSamples::kPieces;
+constexpr int kCircleSamples = kCirclePieces;
 constexpr int kStraightSamples = 12;  // pieces
 constexpr int kRingSamples = 96;      // of a circle against a face that is not simple on it: minima may lie close
 constexpr double kOnFace = 1e-9;      // [m]
@@ -63,9 +63,8 @@ private:
 };
 
 double slopeOn(const Face& face, const Curve& line, double t) noexcept {
-    if (line.kind != Curve::Kind::Circle) return gradientOf(face, line.centre + t * line.e1).dot(line.e1);
-    const double c = std::cos(t), s = std::sin(t);
-    return gradientOf(face, line.centre + c * line.e1 + s * line.e2).dot(c * line.e2 - s * line.e1);
+    const LinePlace at = placeAt(line, t);
+    return gradientOf(face, pointOf(line, at)).dot(slopeOf(line, at));
 }
 
 /// A lump's function along a line.
@@ -73,8 +72,7 @@ class Walk {
 public:
     static constexpr double kEnough = kClosed;
 
-    struct Point {
-        double t = 0.0;
+    struct Point : LinePlace {
         Vec3 p;
     };
 
@@ -84,9 +82,14 @@ public:
     const Lump& lump() const noexcept { return lump_; }
     const Highest& faces() const noexcept { return highest_; }
 
-    Point at(double t) const noexcept { return {t, pointOf(line_, t)}; }
+    Point at(double t) const noexcept {
+        const LinePlace place = placeAt(line_, t);
+        return {place, pointOf(line_, place)};
+    }
     double value(const Face& face, const Point& at) const noexcept { return valueOf(face, at.p); }
-    double slope(const Face& face, const Point& at) const noexcept { return slopeOn(face, line_, at.t); }
+    double slope(const Face& face, const Point& at) const noexcept {
+        return gradientOf(face, at.p).dot(slopeOf(line_, at));
+    }
     const Face* highest(const Point& at, double& value) const noexcept { return highest_.at(at.p, value); }
 
 private:
@@ -96,32 +99,63 @@ private:
 };
 
 using Sample = SampleOn<Walk>;
-using EdgeSamples = std::array<Sample, kCircleSamples + 1>;
 
-/// Those of a whole circle, as far as possible at once.
-void sampleCircle(const Walk& walk, double begin, double piece, EdgeSamples& samples) noexcept {
-    const Highest& highest = walk.faces();
-    CircleSamples all;
-    const bool told = all.take(walk.line(), highest.faces());
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        Sample& sample = samples[i];
-        sample.at.t = begin + piece * static_cast<double>(i);
-        sample.at.p = all.point(i);
-        if (told) {
-            sample.value = all.value[i];
-            sample.slope = all.slope[i];
-            sample.face = highest.faces()[static_cast<std::size_t>(all.face[i])];
-        } else {
-            sample.face = highest.at(sample.at.p, sample.value);
-            sample.slope = gradientOf(*sample.face, sample.at.p).dot(all.way(i));
+/// Places of whole circles at the samples.
+struct CirclePlaces {
+    std::array<LinePlace, kCircleSamples + 1> all;
+
+    CirclePlaces() noexcept {
+        constexpr double kPiece = 2.0 * std::numbers::pi / kCircleSamples;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const double t = -std::numbers::pi + kPiece * static_cast<double>(i);
+            all[i] = {t, std::cos(t), std::sin(t)};
         }
     }
-}
+};
+const CirclePlaces kCirclePlaces;
 
-void sampleEdge(const Walk& walk, double begin, double piece, int pieces, EdgeSamples& samples) noexcept {
-    if (walk.line().isClosed()) return sampleCircle(walk, begin, piece, samples);
-    for (int i = 0; i <= pieces; ++i) samples[static_cast<std::size_t>(i)] = sampleAt(walk, begin + piece * i);
-}
+/// Those along a whole circle, many at once.
+class CircleRow {
+public:
+    explicit CircleRow(const Walk& walk) noexcept : walk_(walk) { told_ = rows_.take(walk.line(), faces()); }
+
+    /// False: a face or a place is not what many at once are computed for.
+    bool told() const noexcept { return told_; }
+    double value(std::size_t i) const noexcept { return rows_.value[i]; }
+    double slope(std::size_t i) const noexcept { return rows_.slope[i]; }
+    const Face* face(std::size_t i) const noexcept { return faces()[static_cast<std::size_t>(rows_.face[i])]; }
+    Sample operator[](std::size_t i) const noexcept {
+        return {rows_.value[i], rows_.slope[i], face(i), {kCirclePlaces.all[i], rows_.point(i)}};
+    }
+    /// The same, of one whose faces are not told.
+    Sample alone(std::size_t i) const noexcept {
+        Sample sample;
+        sample.at = {kCirclePlaces.all[i], rows_.point(i)};
+        sample.face = walk_.highest(sample.at, sample.value);
+        sample.slope = gradientOf(*sample.face, sample.at.p).dot(rows_.way(i));
+        return sample;
+    }
+
+private:
+    std::span<const Face* const> faces() const noexcept { return walk_.faces().faces(); }
+
+    const Walk& walk_;
+    CircleSamples rows_;
+    bool told_ = false;
+};
+
+/// Those along any other line, one by one.
+class LineRow {
+public:
+    Sample& at(std::size_t i) noexcept { return all_[i]; }
+    double value(std::size_t i) const noexcept { return all_[i].value; }
+    double slope(std::size_t i) const noexcept { return all_[i].slope; }
+    const Face* face(std::size_t i) const noexcept { return all_[i].face; }
+    const Sample& operator[](std::size_t i) const noexcept { return all_[i]; }
+
+private:
+    std::array<Sample, kCircleSamples + 1> all_;
+};
 
 /// Between two samples that both fall or both rise: a kink from the one's face, which turned on the way, to the
 /// other's.
@@ -133,12 +167,7 @@ std::optional<Touch> kinkBetween(const Walk& walk, const Sample& low, const Samp
     const double falls = walk.slope(*low.face, at), rises = walk.slope(*high.face, at);
     const double gap = walk.value(*low.face, at);
     if (!(falls < 0.0 && rises > 0.0) || valueOf(walk.lump(), at.p) > gap + 1e-15) return std::nullopt;
-    return Touch{.kind = Touch::Kind::Kink,
-                 .t = at.t,
-                 .gap = gap,
-                 .a = placeOf(walk.lump(), *low.face),
-                 .b = placeOf(walk.lump(), *high.face),
-                 .share = rises / (rises - falls)};
+    return kinkAt(at, gap, placeOf(walk.lump(), *low.face), placeOf(walk.lump(), *high.face), rises / (rises - falls));
 }
 
 bool isThere(const Touches& touches, const Curve& line, double t) noexcept {
@@ -253,31 +282,29 @@ bool canTouch(const Curve& core, const Face& face) noexcept {
 
 }  // namespace
 
-double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& touches, double* closer) noexcept {
-    const Walk walk(edge, lump);
-    const Highest& highest = walk.faces();
-    if (highest.least() > reach) return highest.least();
-    if (edge.kind == Curve::Kind::Straight && highest.isConvex()) return searchConvex(walk, reach, touches);
-    const bool closed = edge.isClosed();
-    const int pieces = edge.kind == Curve::Kind::Circle ? kCircleSamples : kStraightSamples;
-    const double begin = -edge.end, piece = 2.0 * edge.end / pieces;
-    EdgeSamples samples;
-    sampleEdge(walk, begin, piece, pieces, samples);
+namespace {
+
+/// What samples bracket. `piece`: of t, from one to the next.
+template <class Row>
+double searchBetween(const Walk& walk, const Row& samples, std::size_t pieces, double piece, double reach,
+                     Touches& touches, double* closer) noexcept {
+    const Curve& edge = walk.line();
     const double farthest = edge.extent() * piece;
-    double least = samples[0].value;
-    for (int i = 0; i < pieces; ++i) {
-        const Sample& low = samples[static_cast<std::size_t>(i)];
-        const Sample& high = samples[static_cast<std::size_t>(i) + 1];
-        const double bound = 0.5 * (low.value + high.value - farthest);
+    double least = samples.value(0);
+    for (std::size_t i = 0; i < pieces; ++i) {
+        const double bound = 0.5 * (samples.value(i) + samples.value(i + 1) - farthest);
         least = std::min(least, bound);
         if (bound > reach) continue;
+        const bool brackets = samples.slope(i) < 0.0 && samples.slope(i + 1) >= 0.0;
+        if (!brackets && samples.face(i) == samples.face(i + 1)) continue;
+        const Sample &low = samples[i], &high = samples[i + 1];
         if (low.face != high.face && (liesOn(edge, low.slope) || liesOn(edge, high.slope))) {
             const Face& flat = liesOn(edge, low.slope) ? *low.face : *high.face;
             const Face& other = &flat == low.face ? *high.face : *low.face;
             const double t = crossingBetween(walk, low, high);
             if (slopeOn(flat, edge, t) * slopeOn(other, edge, t) > 0.0) addEnd(walk, flat, t, reach, touches);
         }
-        if (!(low.slope < 0.0 && high.slope >= 0.0)) {
+        if (!brackets) {
             if (const auto kink = kinkBetween(walk, low, high); kink && kink->gap <= reach) touches.add(*kink);
             continue;
         }
@@ -285,14 +312,39 @@ double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& to
         if (touch.gap <= reach) touches.add(touch);
     }
     if (closer != nullptr) {
-        *closer = samples[0].value;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(pieces); ++i)
+        *closer = samples.value(0);
+        for (std::size_t i = 0; i < pieces; ++i)
             *closer = std::min(*closer, closerBound(edge, samples[i], samples[i + 1], piece));
     }
-    const int fan = edge.kind == Curve::Kind::Circle ? kCircleSamples / 8 : kStraightSamples;
-    for (int i = 0; i < pieces + (closed ? 0 : 1); i += fan)
-        addFixed(walk, samples[static_cast<std::size_t>(i)], reach, touches);
+    const bool circle = edge.kind == Curve::Kind::Circle;
+    const std::size_t every = circle ? kFixedEvery : kStraightSamples;
+    for (std::size_t i = 0; i < pieces + (edge.isClosed() ? 0 : 1); i += every)
+        if (!(samples.value(i) > reach))
+            addFixed(walk, samples[i], reach, touches,
+                     circle ? static_cast<std::uint8_t>(i / kFixedEvery) : Touch::kNone);
     return least;
+}
+
+}  // namespace
+
+double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& touches, double* closer) noexcept {
+    const Walk walk(edge, lump);
+    const Highest& highest = walk.faces();
+    if (highest.least() > reach) return highest.least();
+    if (edge.kind == Curve::Kind::Straight && highest.isConvex()) return searchConvex(walk, reach, touches);
+    const int pieces = edge.kind == Curve::Kind::Circle ? kCircleSamples : kStraightSamples;
+    const double begin = -edge.end, piece = 2.0 * edge.end / pieces;
+    const auto all = static_cast<std::size_t>(pieces);
+    if (edge.isClosed()) {
+        const CircleRow row(walk);
+        if (row.told()) return searchBetween(walk, row, all, piece, reach, touches, closer);
+        LineRow samples;
+        for (std::size_t i = 0; i <= all; ++i) samples.at(i) = row.alone(i);
+        return searchBetween(walk, samples, all, piece, reach, touches, closer);
+    }
+    LineRow samples;
+    for (int i = 0; i <= pieces; ++i) samples.at(static_cast<std::size_t>(i)) = sampleAt(walk, begin + piece * i);
+    return searchBetween(walk, samples, all, piece, reach, touches, closer);
 }
 
 bool canTouch(const Curve& core, const Lump& lump) noexcept {

@@ -16,13 +16,20 @@ struct Touch {
     };
 
     Kind kind = Kind::Smooth;
-    double t = 0.0;          // on the line
-    double gap = 0.0;        // [m], below 0: overlap
-    std::uint8_t a = 0;      // the face, among the lump's
-    std::uint8_t b = kNone;  // of a kink: the other, rising where `a` falls
-    double share = 1.0;      // of `a`, of a kink
+    double t = 0.0;                   // on the line
+    double gap = 0.0;                 // [m], below 0: overlap
+    std::uint8_t a = 0;               // the face, among the lump's
+    std::uint8_t b = kNone;           // of a kink: the other, rising where `a` falls
+    double share = 1.0;               // of `a`, of a kink
+    double cosine = 0.0, sine = 0.0;  // of t on a circle; 0 and 0: nobody has computed them
+    std::uint8_t fixed = kNone;       // which fixedPlace() of a circle it is
 
     static constexpr std::uint8_t kNone = 255;
+
+    LinePlace on(const Curve& line) const noexcept {
+        const bool known = line.kind == Curve::Kind::Circle && (cosine != 0.0 || sine != 0.0);
+        return known ? LinePlace{t, cosine, sine} : placeAt(line, t);
+    }
 };
 
 /// Touches of one line.

@@ -274,6 +274,31 @@ TEST_P(ThreadPaths, OverlapNowhereCatchNowhereAndHoldTheLeastEnergy) {
 INSTANTIATE_TEST_SUITE_P(Held, ThreadPaths, testing::Bool(),
                          [](const auto& made) { return made.param ? "nut" : "bolt"; });
 
+TEST(BoltInNut, PressedInOverlapsByTheDeepestOfAllItsContactsForASearchThatRemembers) {
+    // Truth: the contacts themselves, found anew at each pose, to the bit. The hand is led away from the nut's axis by
+    // up to 2 mm, as one that presses is, so that flanks are left and ridges passed on the way.
+    constexpr double kPlay = 30e-6, kStart = -.0096, kPitch = .001;
+    const auto bolt = solidOf(shape::ThreadBolt{.012 - 2.0 * kPlay, kPitch, .02, .0007});
+    const auto nut = solidOf(shape::ThreadNut{.012, kPitch, .019, .010, .0006});
+    const SolidPair pair{&*bolt, &*nut, {}, kRho};
+    ContactSearch search(pair);
+    double deepest = 0.0;
+    for (int tick = 0; tick < 400; ++tick) {
+        const double t = 1e-3 * tick, ramp = 2.0 * t;
+        const Vec3 tilt(0.04 * ramp * std::sin(2.1 * t), 0.04 * ramp * std::sin(2.7 * t), 0.0);
+        const Vec3 away(0.002 * ramp * std::sin(1.7 * t), 0.002 * ramp * std::sin(2.3 * t), -0.001 * ramp);
+        const Pose X{rotationFromVector(tilt) * rotationFromVector(Vec3(0, 0, kTurn * kStart / kPitch)),
+                     Vec3(0, 0, kStart) + away};
+        const double depth = search.overlapAt(X).depth;
+        deepest = std::max(deepest, depth);
+        if (tick % 2 > 0) continue;
+        PairContacts all;
+        ContactSearch(pair).find(X, 0.0, all);
+        ASSERT_EQ(depth, overlapOf(all)) << tick;
+    }
+    EXPECT_GT(deepest, 1e-3);
+}
+
 TEST(BoltInNut, AllocatesNothing) {
     // Truth: invariant.
     if (!support::RtGuard::available()) GTEST_SKIP() << "a sanitizer owns the allocator";
