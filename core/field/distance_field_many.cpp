@@ -166,8 +166,8 @@ struct DistanceField::Block {
             }
             if constexpr (kBounds) {
                 const float cells = std::abs(head[i].cells);  // a power of two times those of a largest brick
-                const float held =
-                    static_cast<float>(field.slacks_[k][octant(i, 0.25 * static_cast<double>(cells))]) * kFloatSlackUnit;
+                const float held = static_cast<float>(field.slacks_[k][octant(i, 0.25 * static_cast<double>(cells))]) *
+                                   kFloatSlackUnit;
                 edge[i] = largest_brick / cells;
                 slack[i] = field.bounded_within_ >= 0.0 ? 1.0f : held;
                 most[i] = field.bounded_within_ >= 0.0 ? held * held * edge[i] : std::numeric_limits<float>::infinity();
