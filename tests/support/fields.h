@@ -26,7 +26,7 @@ struct Anything {
     operator T() const;
 };
 
-inline constexpr std::size_t kMostFields = 8;
+inline constexpr std::size_t kMostFields = 9;
 
 /// How many fields the plain struct T has: the most that it can be made from.
 template <class T, class... Field>
@@ -68,9 +68,12 @@ void eachField(T& value, F f) {
     } else if constexpr (count == 7) {
         auto& [a, b, c, d, e, g, h] = value;
         all(a, b, c, d, e, g, h);
-    } else {
+    } else if constexpr (count == 8) {
         auto& [a, b, c, d, e, g, h, i] = value;
         all(a, b, c, d, e, g, h, i);
+    } else {
+        auto& [a, b, c, d, e, g, h, i, j] = value;
+        all(a, b, c, d, e, g, h, i, j);
     }
 }
 

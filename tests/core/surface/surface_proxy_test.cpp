@@ -30,6 +30,7 @@ struct Followed {
         loose = 0;  // gaps told: above the exact one; at rest under a row; and far below it
     int suspended = 0, longest = 0, stuck = 0, meets = 0;
     double grain = 0.0;  // greatest change of the spring's force in a tick [N]
+    int too_fast = 0;    // ticks, held by rows before and after, on which the part went farther than it may
     std::vector<double> times;
 
     double quantile(double share) {
@@ -60,6 +61,10 @@ Followed follow(const test::SurfaceCase& scene) {
     Followed seen;
     int run = 0;
     Vec3 last = Vec3::Zero();
+    double reach = 0.0;
+    for (const Vec3& v : scene.held.vertices) reach = std::max(reach, v.norm());
+    bool was_held = false;
+    Pose X_WH_last = scene.hand(0.0);
     for (int tick = 0; tick < scene.ticks; ++tick) {
         const Pose X_WH = scene.hand(1e-3 * tick), before = proxy.pose();
         const double start = threadMicroseconds();
@@ -70,6 +75,12 @@ Followed follow(const test::SurfaceCase& scene) {
         seen.suspended += now.suspended;
         seen.stuck += now.stuck;
         seen.meets += now.meets;
+        const bool is_held = now.active > 0 && !now.suspended;
+        const double hand_way = (X_WH.p - X_WH_last.p).norm() + reach * X_WH.q.angularDistance(X_WH_last.q);
+        const double most = std::max(SurfaceProxy::kFastestHeld, 1.5 * hand_way);
+        seen.too_fast += was_held && is_held && (now.X_WG.p - before.p).norm() > most + 1e-9;
+        was_held = is_held;
+        X_WH_last = X_WH;
         const Vec3 force = kStiffness * (X_WH.p - now.X_WG.p);
         if (tick > 0) seen.grain = std::max(seen.grain, (force - last).norm());
         last = force;
@@ -113,6 +124,7 @@ TEST_P(SurfaceOf, TrianglesNeverMeetAndTheGapToldIsProven) {
     // Wanted is none: on bumpy meshes one tick in about fifty tells a gap that is proven, but too low.
     EXPECT_LE(20 * seen.loose, seen.measured) << seen.loose;
     EXPECT_GT(seen.measured, 0);
+    EXPECT_EQ(seen.too_fast, 0);
     EXPECT_LE(seen.suspended, mostSuspended(GetParam()));
 }
 
