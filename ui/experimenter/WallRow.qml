@@ -12,8 +12,8 @@ RowLayout {
     Accessible.role: Accessible.StaticText
     Accessible.name: wall.condition + ": " + verdict.text
     Column {
-        Layout.preferredWidth: look.scale * 250
-        Layout.maximumWidth: look.scale * 250
+        Layout.preferredWidth: look.scale * 330
+        Layout.maximumWidth: look.scale * 330
         Say {
             width: parent.width
             font.pixelSize: look.scale * 13

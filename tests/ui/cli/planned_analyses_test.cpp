@@ -33,7 +33,7 @@ protected:
         std::string text = readText(study());
         std::map<std::string, std::string> quicker = {
             {"cell_mm = 0.5", "cell_mm = 1.0"},  {"spacing_mm = 1.0", "spacing_mm = 3.0"},
-            {"timeout_s = 30", "timeout_s = 3"}, {"timeout_s = 60", "timeout_s = 3"},
+            {"timeout_s = 30", "timeout_s = 5"}, {"timeout_s = 60", "timeout_s = 3"},
             {"timeout_s = 90", "timeout_s = 3"}, {"max_trials = 60", "max_trials = 10"}};
         // A secondary task needs its trials.
         if (text.find("[secondary]") == std::string::npos) quicker["repetitions = 2"] = "repetitions = 1";
