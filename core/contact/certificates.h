@@ -17,8 +17,7 @@ namespace passung::contact {
 /// c and R the sphere's, ΔR = R_X - R_r, Δx the same of the origins. |ΔR|₂ = 2 sin(θ/2) = |ΔR|_F / √2.
 /// What is proven to be at `limit` or above has nothing for a look that asks for less, and is not looked at.
 ///   A traversal prunes by the true φ in any case (queryContacts); but what it reads may be below `limit` where the
-///   true
-/// φ is above, by what the field errs. So that the same is found with certificates and without, as much is left
+/// true φ is above, by what the field errs. So that the same is found with certificates and without, as much is left
 /// between: the accuracy that the field was built to, and a tenth of depth.
 /// Limit cases: the same pose → m holds as it is. More than kPoses looks ago → nothing is known; a certificate that is
 /// asked for is renewed before. A field with holes, or no memory → nothing is ever proven.

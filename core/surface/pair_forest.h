@@ -27,8 +27,7 @@ struct ClusterPair {
 /// of normals there is a way travelled S_c; pairs asleep lie in buckets of that of their plane, so that a tick finds
 /// those that are due without looking at the others.
 ///   A pair asleep with key k is set apart by at least k - S_c along its plane: no point of the held part comes nearer
-///   to
-/// a plane of the class than S_c grows.
+/// to a plane of the class than S_c grows.
 class PairForest {
 public:
     explicit PairForest(std::size_t most);

@@ -14,6 +14,7 @@
 
 #include "analysis/truth/accuracy_tick_reader.h"
 #include "analysis/truth/accuracy_tick_tables.h"
+#include "core/base/random.h"
 #include "core/base/regular_file.h"
 
 namespace passung::run {
@@ -145,9 +146,7 @@ FrontFile newFrontFile(const std::string& commit) {
 }
 
 std::string conditionMark(const plan::Condition& condition) {
-    std::uint64_t hash = 0xcbf29ce484222325u;
-    for (const char c : condition.params_json) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-    return fmt::format("{:016x}", hash);
+    return fmt::format("{:016x}", fnv1a64(condition.params_json));
 }
 
 std::string frontFileText(const FrontFile& file) {
