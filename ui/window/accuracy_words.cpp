@@ -101,7 +101,7 @@ QString originWords(const run::FrontOrigin& origin) {
             ? said(QT_TRANSLATE_NOOP("accuracy", "Measured on another machine (%1) by passung %2 on %3."))
             : said(QT_TRANSLATE_NOOP("accuracy", "Measured before on this machine (%1) by passung %2 on %3."));
     // Not one after another: a name may hold a place of its own.
-    const QString words = where.arg(text(origin.machine), program, text(origin.date));
+    QString words = where.arg(text(origin.machine), program, text(origin.date));
     if (!origin.outdated) return words;
     return words + QLatin1Char(' ') +
            said(QT_TRANSLATE_NOOP("accuracy", "The study has changed since: measure again to be sure."));

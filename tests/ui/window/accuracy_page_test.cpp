@@ -90,7 +90,7 @@ TEST_F(AccuracyPage, ASettingIsMeasuredChosenInThePictureAndWrittenIntoTheStudy)
     ASSERT_TRUE(measuring());
     waitFor([&] { return app_->accuracy().work()["share"].toDouble() > 0.3 || !measuring(); });
     ASSERT_TRUE(measuring()) << "measured before anything could be seen of it";
-    EXPECT_NE(textOf("accuracyWhat").find("%"), std::string::npos);
+    EXPECT_NE(textOf("accuracyWhat").find('%'), std::string::npos);
     shot("accuracy_measuring");
     click("page-data");  // the window is used meanwhile
     click("page-studies");
