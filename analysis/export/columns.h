@@ -1,9 +1,9 @@
 #pragma once
 
 #include <concepts>
-#include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -26,25 +26,17 @@ private:
     std::function<std::string(const Row&)> text_;
 };
 
-/// What some columns have; meanings as in Column.
-struct ColumnDetails {
-    std::string unit = {};
-    std::vector<std::string> levels = {};
-    std::string formula = {};
-    std::int64_t formula_version = 1;
-};
-
 /// A column of a table whose rows are each made from a `Row`: what the codebook says of it, and where its cells come
 /// from. The only place that knows both.
 template <class Row>
 struct ColumnOf {
-    std::string name, label, type;
-    Getter<Row> text;
-    ColumnDetails details = {};
+    ColumnOf(std::string_view name, std::string_view label, std::string_view type, Getter<Row> get,
+             const ColumnDetails& details = {})
+        : description(describe(name, label, type, details)), text(std::move(get)) {}
+    ColumnOf(Column column, Getter<Row> get) : description(std::move(column)), text(std::move(get)) {}
 
-    Column description() const {
-        return {name, label, details.unit, type, details.formula, details.formula_version, details.levels};
-    }
+    Column description;
+    Getter<Row> text;
 };
 
 template <class Row>
@@ -59,14 +51,13 @@ void append(ColumnsOf<Row>& columns, const std::type_identity_t<ColumnsOf<Row>>&
 template <class Row, class Part, class GetPart>
 void append(ColumnsOf<Row>& columns, const ColumnsOf<Part>& more, GetPart part) {
     for (const ColumnOf<Part>& column : more)
-        columns.push_back({column.name, column.label, column.type,
-                           [text = column.text, part](const Row& row) { return text(part(row)); }, column.details});
+        columns.push_back({column.description, [text = column.text, part](const Row& row) { return text(part(row)); }});
 }
 
 template <class Row>
 std::vector<Column> descriptions(const ColumnsOf<Row>& columns) {
     std::vector<Column> all;
-    for (const ColumnOf<Row>& column : columns) all.push_back(column.description());
+    for (const ColumnOf<Row>& column : columns) all.push_back(column.description);
     return all;
 }
 

@@ -221,7 +221,8 @@ Table makeScoresWide(const StudyData& study) {
     for (const auto& [column, run] : occasions) {
         std::string name = columnName(column);
         const auto is_taken = [&] {
-            return std::any_of(columns.begin(), columns.end(), [&](const auto& other) { return other.name == name; });
+            return std::any_of(columns.begin(), columns.end(),
+                               [&](const auto& other) { return other.description.name == name; });
         };
         while (is_taken()) name += '_';
         columns.push_back(meanScoreColumn(name, column, *run, definitions));

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace passung::exporter {
@@ -21,6 +23,25 @@ struct Column {
     std::int64_t formula_version = 1;
     std::vector<std::string> levels;  // empty: not a fixed set
 };
+
+/// The values that a column takes. Made from texts outside of the lists of columns, which compile at length otherwise.
+struct Levels {
+    Levels() = default;
+    Levels(std::initializer_list<std::string_view> texts);
+    Levels(std::vector<std::string> texts) : names(std::move(texts)) {}
+
+    std::vector<std::string> names;
+};
+
+/// What some columns have; meanings as in Column.
+struct ColumnDetails {
+    std::string_view unit = {};
+    Levels levels = {};
+    std::string_view formula = {};
+    std::int64_t formula_version = 1;
+};
+
+Column describe(std::string_view name, std::string_view label, std::string_view type, const ColumnDetails& details);
 
 /// One CSV file: its columns' meaning and its cells as text.
 struct Table {
