@@ -18,10 +18,11 @@ endif()
 # What every room is compiled with. Deterministic: no contraction, no fast-math, no -march
 # that would change results between machines. 16-byte alignment: the layout of the distribution's FCL.
 add_library(passung_flags INTERFACE)
+# g++ clears away what it parsed again and again while it compiles a room in one piece; not below half a gigabyte.
 # -Wrestrict of g++ 12 warns falsely about a string literal assigned to a std::string (its bug 105651).
 target_compile_options(passung_flags INTERFACE
   $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>
-  $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>>
+  "$<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288;-Wno-restrict>>"
   ${PASSUNG_FALSE_WARNINGS}
   ${PASSUNG_KEPT_HEADERS}
   $<BUILD_INTERFACE:$<$<BOOL:${PASSUNG_WERROR}>:-Werror>>
