@@ -16,6 +16,7 @@ constexpr double kSamePlace = 0.5;       // of a line's parameter: a contact tha
 constexpr int kMostTaken = 60;           // rows taken up or let go in a look
 constexpr double kAlongRidge = 0.3;      // of a unit motion: what contacts leave of it
 constexpr double kOffRidge = 4e-6;       // [m]
+constexpr int kMostReleases = 4;         // of rows that were made stiff, in a look
 constexpr double kRowTolerance = 1e-12;  // [m]
 constexpr double kMostLean = 0.02;       // [rad]
 
@@ -29,6 +30,21 @@ Pose movedBy(const Pose& X, const motion::Motion& u, double rho) noexcept {
     Pose there{rotationFromVector(u.tail<3>() / rho) * X.q, X.p + u.head<3>()};
     there.q.normalize();
     return there;
+}
+
+/// B = L Lᵀ. False: some of B is not stiff enough.
+bool isStiff(const MotionMatrix& B, MotionMatrix& L) noexcept {
+    const Eigen::LLT<MotionMatrix> chol(B);
+    if (chol.info() != Eigen::Success || !(chol.matrixLLT().diagonal().cwiseAbs2().minCoeff() > kLeastStiffness))
+        return false;
+    L = chol.matrixL();
+    return true;
+}
+
+/// L⁻¹ v. Of the unit matrix that is v to the bit, but for the signs of zeros.
+motion::Motion solved(const MotionMatrix& L, bool bent, const motion::Motion& v) noexcept {
+    if (!bent && (v.array() != 0.0).all()) return v;
+    return L.triangularView<Eigen::Lower>().solve(v);
 }
 
 }  // namespace
@@ -110,25 +126,34 @@ void PoseSolver::remember(const Pose& X, const PoseMemory& memory) noexcept {
     }
 }
 
-/// B = L Lᵀ. False: it is 1, nothing bends it.
-bool PoseSolver::factor(const Pose& X, MotionMatrix& L) noexcept {
-    MotionMatrix B = MotionMatrix::Identity();
+/// B = L Lᵀ; `wanted` becomes what it is for that B. False: it is 1, nothing bends it.
+bool PoseSolver::factor(const Pose& X, MotionMatrix& L, motion::Motion& wanted) noexcept {
+    MotionMatrix B = MotionMatrix::Identity(), along_rows = MotionMatrix::Zero();
+    motion::Motion to_rows = motion::Motion::Zero();
     bool bent = false;
     ridge_ = motion::Motion::Zero();
     for (std::size_t i = 0; i < count_; ++i) {
         const HeldContact& from = rows_[i].from;
         if (!(from.push > 0.0)) continue;
-        B -= from.push * curvatureOf(pair(from.pair), X, from.contact, rows_[i].slides);
         bent = true;
+        B -= from.push * curvatureOf(pair(from.pair), X, from.contact, rows_[i].slides);
+        const motion::Motion& a = from.contact.a;
+        const double gap = from.contact.gap + allowed_;
+        rows_[i].stiff = std::abs(gap) < kHeldGap;
+        if (!rows_[i].stiff) continue;
+        const double stiffness = kHeldStiffness / a.squaredNorm();
+        along_rows += stiffness * a * a.transpose();
+        to_rows -= stiffness * gap * a;
     }
     L = B;
-    if (!bent) return false;
-    Eigen::LLT<MotionMatrix> chol(B);
-    if (chol.info() == Eigen::Success && chol.matrixLLT().diagonal().cwiseAbs2().minCoeff() > kLeastStiffness) {
-        L = chol.matrixL();
-        return true;
+    if (!bent || isStiff(B, L)) {
+        for (std::size_t i = 0; i < count_; ++i) rows_[i].stiff = false;
+        return bent;
     }
-    Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(B);
+    B += along_rows;
+    wanted += to_rows;
+    if (isStiff(B, L)) return true;
+    const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(B);
     if (eigen.eigenvalues()[0] < 0.0) ridge_ = eigen.eigenvectors().col(0);
     const motion::Motion values = eigen.eigenvalues().cwiseMax(kLeastStiffness);
     B = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
@@ -156,30 +181,47 @@ bool PoseSolver::solveRows(const motion::Motion& wanted, motion::ActiveSet& acti
     }
 }
 
-/// The motion that the rows leave of `wanted`; what holds it is held from now on.
-motion::Motion PoseSolver::step(const Pose& X, const motion::Motion& wanted, PoseMemory& memory) noexcept {
-    MotionMatrix L;
-    const bool bent = factor(X, L);
-    const auto lower = L.triangularView<Eigen::Lower>();
-    // L⁻¹ v. Of the unit matrix that is v to the bit, but for the signs of zeros.
-    const auto solved = [&](const motion::Motion& v) -> motion::Motion {
-        if (!bent && (v.array() != 0.0).all()) return v;
-        return lower.solve(v);
-    };
-    const motion::Motion there = solved(wanted);
+/// The rows with L: a_i L⁻ᵀ.
+void PoseSolver::prepare(const MotionMatrix& L, bool bent) noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
-        const motion::Motion a = solved(rows_[i].from.contact.a);
+        const motion::Motion a = solved(L, bent, rows_[i].from.contact.a);
         const double length = a.norm();
         prepared_[i].a = a / length;
         prepared_[i].length = length;
         prepared_[i].contact = static_cast<std::uint32_t>(i);
         prepared_[i].bound = -(rows_[i].from.contact.gap + allowed_) / length;
     }
+}
+
+/// Lets go of rows that were made stiff and that do not hold: beside one nothing could move away from it. True: of
+/// some.
+bool PoseSolver::releaseStiff(const motion::ActiveSet& active) noexcept {
+    for (int i = 0; i < active.size(); ++i) rows_[active.row(i).contact].stiff = false;
+    bool any = false;
+    for (std::size_t i = 0; i < count_; ++i) {
+        if (!rows_[i].stiff) continue;
+        rows_[i].stiff = false;
+        rows_[i].from.push = 0.0;
+        any = true;
+    }
+    return any;
+}
+
+/// The motion that the rows leave of `wanted`; what holds it is held from now on. `back`: B is 1.
+motion::Motion PoseSolver::step(const Pose& X, const motion::Motion& wanted, bool back, PoseMemory& memory) noexcept {
+    MotionMatrix L = MotionMatrix::Identity();
     motion::ActiveSet active;
     motion::Motion y;
-    if (!solveRows(there, active, y)) {
-        for (std::size_t i = 0; i < count_; ++i) prepared_[i].bound = std::min(prepared_[i].bound, 0.0);
-        if (!solveRows(there, active, y)) return motion::Motion::Zero();
+    for (int round = 0;; ++round) {
+        motion::Motion way = wanted;
+        const bool bent = !back && factor(X, L, way);
+        prepare(L, bent);
+        const motion::Motion there = solved(L, bent, way);
+        if (!solveRows(there, active, y)) {
+            for (std::size_t i = 0; i < count_; ++i) prepared_[i].bound = std::min(prepared_[i].bound, 0.0);
+            if (!solveRows(there, active, y)) return motion::Motion::Zero();
+        }
+        if (!releaseStiff(active) || round == kMostReleases) break;
     }
     memory.count = static_cast<std::size_t>(active.size());
     for (std::size_t i = 0; i < memory.count; ++i) {
@@ -238,7 +280,7 @@ ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory
         remember(X, memory);
         const bool back = !kept && astray > kMostAstray;
         PoseMemory aside = memory;
-        motion::Motion u = back ? step(X, motion::Motion::Zero(), aside) : step(X, wanted, memory);
+        motion::Motion u = back ? step(X, motion::Motion::Zero(), true, aside) : step(X, wanted, false, memory);
         if (!left && kept && u.norm() <= kStillMoving) {
             const motion::Motion off = offRidge(wayTo(X_WG, X, rho), memory);
             left = off.squaredNorm() > 0.0;

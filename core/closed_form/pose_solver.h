@@ -47,16 +47,22 @@ inline constexpr double kRepair = 1e-4;         // of overlap that was there bef
 inline constexpr double kKeptOverlap = 5e-8;    // [m]
 inline constexpr double kStillMoving = 3e-7;    // of |u| in a look: the error left is of second order [m]
 inline constexpr double kLeastStiffness = 0.3;  // of the least eigenvalue of B
+inline constexpr double kHeldStiffness = 1e5;   // added to B along what holds
+inline constexpr double kHeldGap = 1e-6;        // of a row that holds, at most [m]
 inline constexpr int kKeptLooks = 6;
 
 /// Finds the pose nearest to the hand's without overlap, from a free one on:
 ///   min ½|x_H - x|² + ½ρ²|φ|²   s.t.   all gaps ≥ 0,
 /// by sequential quadratic programming: each look minimises ½ uᵀ B u - wᵀ u under a_i · u ≥ -gap_i, B = 1 - Σ λ_i H_i,
 /// λ of the look before. B is the algorithm: play of 10 µm with the hand 3 mm away has a constraint of 10 µm radius,
-/// past which rows alone run tangentially at every look. Where B is not positive its eigenvalues are raised to
-/// kLeastStiffness, and where it rests on such a ridge it steps off once. Places where something held stay as rows for
-/// some looks (cuts) while their face is the highest there: keptAt(). Contacts whose line could not touch with their
-/// normal make no rows: Contact::lean. Where no pose is free, overlap is only kept from growing.
+/// past which rows alone run tangentially at every look. There B is not positive, mostly only across rows that hold: as
+/// nothing moves across them, each is made stiff, + ½ kHeldStiffness (a_i · u + gap)² of a unit row, which changes no
+/// motion that they hold and leaves bare how the energy bends along them (as an augmented Lagrangian does; Nocedal and
+/// Wright, Numerical Optimization, 17.3). One that turns out to let go is let go of in the same look. Where the energy
+/// bends so along the rows too B's eigenvalues are raised to kLeastStiffness, and where it rests on such a ridge it
+/// steps off once. Places where something held stay as rows for some looks (cuts) while their face is the highest
+/// there: keptAt(). Contacts whose line could not touch with their normal make no rows: Contact::lean. Where no pose is
+/// free, overlap is only kept from growing.
 ///
 /// Nothing is jumped. A pose counts only if it overlaps by no more than kKeptOverlap. On the way from one to the next
 /// no point of the held part goes farther than is proven to be free, or than kLongestWay and half the thickness of the
@@ -87,12 +93,15 @@ private:
     struct Row {
         HeldContact from;
         bool slides = true;
+        bool stiff = false;  // kHeldStiffness is in the look's B
     };
 
     void find(const Pose& X) noexcept;
     void remember(const Pose& X, const PoseMemory& memory) noexcept;
-    motion::Motion step(const Pose& X, const motion::Motion& wanted, PoseMemory& memory) noexcept;
-    bool factor(const Pose& X, MotionMatrix& L) noexcept;
+    motion::Motion step(const Pose& X, const motion::Motion& wanted, bool back, PoseMemory& memory) noexcept;
+    void prepare(const MotionMatrix& L, bool bent) noexcept;
+    bool releaseStiff(const motion::ActiveSet& active) noexcept;
+    bool factor(const Pose& X, MotionMatrix& L, motion::Motion& wanted) noexcept;
     motion::Motion offRidge(const motion::Motion& way, const PoseMemory& memory) const noexcept;
     bool solveRows(const motion::Motion& wanted, motion::ActiveSet& active, motion::Motion& y) noexcept;
     void add(const Row& row) noexcept;

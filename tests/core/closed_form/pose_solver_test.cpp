@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "tests/core/closed_form/shape_pairs.h"
@@ -173,6 +174,30 @@ TEST(PegInBore, ATiltedPegSlidesWithoutACatch) {
         }
         EXPECT_LT(looks / 3000.0, 3.0);
     }
+}
+
+TEST(PegInBore, OneThatWandersAboutItsMouthConvergesAsNewtonsMethodDoes) {
+    // Truth: theory: near a minimum each look squares the error, so that few are needed wherever the hand does not slip
+    // past an edge, however little the energy bends there. (With all of B raised to be positive 227 ticks took more.)
+    PegInBore scene(10e-6);
+    ConstrainedPose found{.X_WG = {Quat::Identity(), {0, 0, 0.002}}};
+    const auto wave = [](double rate, double t, double phase) {
+        return std::sin(2.0 * std::numbers::pi * rate * t + phase);
+    };
+    int slow = 0, unfinished = 0;
+    for (int tick = 0; tick < 6000; ++tick) {
+        const double t = 1e-3 * tick;
+        const Pose hand{rotationFromVector(Vec3(0.05 * wave(0.29, t, 0.0), 0.04 * wave(0.43, t, 2.0), 0.0)),
+                        {0.003 * wave(0.37, t, 0.0), 0.0025 * wave(0.23, t, 1.0),
+                         0.002 - 0.01 * (1.0 - wave(0.4, t, 0.5 * std::numbers::pi))}};
+        found = scene.solver.solve(found.X_WG, hand, scene.memory);
+        ASSERT_LE(found.overlap, kKeptOverlap) << tick;
+        slow += found.iterations > 5 ? 1 : 0;
+        unfinished += found.converged ? 0 : 1;
+    }
+    std::printf("more than 5 looks: %d, not at the end of its way: %d of 6000 ticks\n", slow, unfinished);
+    EXPECT_LE(slow, 40);
+    EXPECT_LE(unfinished, 20);
 }
 
 TEST(PoseSolver, ABallPressedOnABoxRestsOnItsFace) {

@@ -19,7 +19,7 @@ namespace passung {
 namespace {
 
 /// The number to which the hashes below belong.
-constexpr int kHashedNumerics = 4;
+constexpr int kHashedNumerics = 5;
 
 /// The mathematics library's own bits, which differ between its versions and between processors. Where they do, these
 /// hashes say nothing.
@@ -48,7 +48,7 @@ const Golden kGolden[] = {
 constexpr std::uint64_t kEveryEffect = 0xf95259786173db2bu;
 
 /// The same without friction, on closed forms.
-constexpr std::uint64_t kClosedForm = 0x26b3332b2dbec47au;
+constexpr std::uint64_t kClosedForm = 0x9a6ccf5c5185c6cfu;
 
 /// On surfaces, without the low-pass that they do not have.
 constexpr std::uint64_t kSurface = 0xf4f77b4c9b0e0a99u;
