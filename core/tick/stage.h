@@ -51,14 +51,14 @@ inline constexpr bool kIsPart = [] {
 /// a reference to each that it owns or hands on; it sees nothing else. The parts are those of TickState, which last,
 /// and of TickFrame, which die with the tick. An effect that hums:
 ///
-///   struct Hum { double phase = 0.0; };                                                   // its own state
-///   void renderHum(const TickModel&, const HandSample&, Hum&, HandWrench&) noexcept;      // reads, owns, hands on
+///   struct Humming { double phase = 0.0; };                                               // its own state
+///   void renderHum(const TickModel&, const HandSample&, Humming&, HandWrench&) noexcept;  // reads, owns, hands on
 ///   inline constexpr StageOf kHum{renderHum, {.name = "hum", .parameters = "effects.hum", // its card
 ///                                             .cost = "constant", .needs = ..., .reason = ...}};
 ///
 /// goes into hum.h and hum.cpp, in the room's CMakeLists.txt. Then
-///   - scene::Effects (core/scene/scene_spec.h) gets its parameters, which it finds in TickModel::effects,
-///   - tick_state.h the header, TickState the part Hum and AllStages, at its place in the order, kHum,
+///   - scene::Effects (core/scene/scene_spec.h) gets its parameters, a Hum, which it finds in TickModel::effects,
+///   - tick_state.h the header, TickState the part Humming and AllStages, at its place in the order, kHum,
 ///   - tests/support/every_effect.h the effect: stage_test.cpp says whether the declaration is true.
 /// Memory that depends on the scene is sized in makeState (tick_state.cpp).
 template <class... Argument>
