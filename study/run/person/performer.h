@@ -30,7 +30,7 @@ public:
     /// wants something that cannot wait for it. Where nothing is shown: not at all.
     virtual void awaitPicture() {}
     /// What windows have given the participant between these times of the attempt whose loop began at `zero_ns`, on the
-    /// steady clock.
+    /// steady clock. Its drawn_pose is "proxy" or "device", also without a picture: the database refuses another.
     virtual session::Presentation presented(std::int64_t zero_ns, std::int64_t from_ns, std::int64_t to_ns) = 0;
     /// Source of the answers to questionnaires; may be null if the plan has none.
     virtual session::QuestionnaireSource* answers() = 0;
