@@ -255,6 +255,11 @@ void ContactSearch::addMeetings(bool of_held) {
     }
 }
 
+std::size_t ContactSearch::meetings() const noexcept {
+    return static_cast<std::size_t>(
+        std::count_if(meetings_.begin(), meetings_.end(), [](const Meeting& meeting) { return !meeting.of_thread; }));
+}
+
 void ContactSearch::moveTo(const Pose& X_WH) noexcept {
     way_ += (X_WH.p - X_last_.p).norm();
     turn_ += rotationVector(X_WH.q * X_last_.q.conjugate()).norm();

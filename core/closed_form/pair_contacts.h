@@ -58,6 +58,8 @@ public:
     explicit ContactSearch(const SolidPair& pair);
 
     const SolidPair& pair() const noexcept { return pair_; }
+    /// Pieces of lines times lumps of the other part that a look may have to look at, threads' apart.
+    std::size_t meetings() const noexcept;
 
     /// All contacts with a gap of at most `reach` and a lean of at most `most_lean`. Returns a way that no point of the
     /// held part has to go before the parts touch [m], proven where it is > 0. rt-safe.

@@ -51,12 +51,14 @@ motion::Motion solved(const MotionMatrix& L, bool bent, const motion::Motion& v)
 
 PoseSolver::PoseSolver(std::span<const SolidPair> pairs)
     : rows_(pairs.empty() ? 0 : kMostRows), prepared_(rows_.size()) {
+    std::size_t meetings = 1;
     for (const SolidPair& pair : pairs) {
-        searches_.emplace_back(pair);
+        meetings += searches_.emplace_back(pair).meetings();
         reach_ = std::max(reach_, reachOf(*pair.held));
         sight_ = std::min({sight_, sightOf(*pair.held), sightOf(*pair.obstacle)});
         longest_way_ = std::min({longest_way_, 0.5 * thicknessOf(*pair.held), 0.5 * thicknessOf(*pair.obstacle)});
     }
+    most_looks_ = std::clamp(kMostMeetings / static_cast<int>(meetings), kFewestLooks, kMostLooks);
 }
 
 void PoseSolver::add(const Row& row) noexcept {
@@ -256,6 +258,7 @@ motion::Motion PoseSolver::offRidge(const motion::Motion& way, const PoseMemory&
 ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most) noexcept {
     ConstrainedPose result{.X_WG = X_WG};
     way_.clear();
+    most = std::min(most, most_looks_);
     const double rho = searches_.empty() ? 1.0 : pair(0).metric_radius;
     Pose X = X_WG;
     double last = std::numeric_limits<double>::infinity();  // length of the last look's motion

@@ -37,6 +37,8 @@ struct ConstrainedPose {
 };
 
 inline constexpr int kMostLooks = 24;
+inline constexpr int kFewestLooks = 6;
+inline constexpr int kMostMeetings = 2400;      // ContactSearch::meetings() times looks: what has many has fewer looks
 inline constexpr int kThreadLooks = 12;         // the same with threads, whose looks take longer
 inline constexpr double kLongestLook = 2.5e-4;  // of |u| in a look near an obstacle [m]
 inline constexpr double kLongestWay = 7e-4;     // of any point of the held part in such a look [m]
@@ -78,7 +80,7 @@ public:
     /// The held part's pairs, with one ρ. Their solids outlive this.
     explicit PoseSolver(std::span<const SolidPair> pairs);
 
-    /// In at most `most` looks. rt-safe.
+    /// In at most `most` looks, and no more than kMostMeetings lets it have. rt-safe.
     ConstrainedPose solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most = kMostLooks) noexcept;
 
     /// Poses without overlap that the last solve went through, from its start on: the proxy's way.
@@ -110,6 +112,7 @@ private:
     double distance(const Contact& contact, const HeldContact& old) const noexcept;
 
     std::vector<ContactSearch> searches_;
+    int most_looks_ = kMostLooks;
     PairContacts contacts_;
     std::vector<Row> rows_;                    // kMostRows, the first `count_`
     std::vector<motion::MotionRow> prepared_;  // the same

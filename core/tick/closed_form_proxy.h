@@ -58,7 +58,7 @@ inline constexpr StageOf kClosedFormProxy{
     {.name = "closed-form proxy",
      .parameters = "contact.method, geometry, stiffness_N_per_m, rotational_stiffness",
      .cost = "a look at the pairs' faces and edges and a motion under contacts for each sub-step, mostly two; bounds: "
-             "kMostLooks, kHeuristicLooks",
+             "kMostLooks, kHeuristicLooks, kMostMeetings",
      .needs = [](const TickModel& model) { return model.hasClosedForm(); },
      .reason =
          [](const TickModel& model) {
