@@ -219,7 +219,7 @@ void addGroove(double pitch, double bottom, double half, double middle, double s
 double threadDepth(double pitch) { return 0.625 * 0.5 * std::numbers::sqrt3 * pitch; }
 
 void add(const ThreadBolt& bolt, Bound& bound) {
-    const double radius = 0.5 * bolt.diameter;
+    const double radius = 0.5 * bolt.nominal_diameter - bolt.clearance;
     const Vec3 out = outwards(bound.middle);
     bound.beyond(out, radius);
     bound.aboveAndBelow(0.0, bolt.length);
@@ -257,13 +257,10 @@ void add(const KeyedBorePlate& plate, Bound& bound) {
 }
 
 void add(const ThreadNut& nut, Bound& bound) {
-    const double radius = 0.5 * nut.diameter, crest = radius - threadDepth(nut.pitch);
+    const double radius = 0.5 * nut.nominal_diameter + nut.clearance, crest = radius - threadDepth(nut.pitch);
     addBore(crest, -std::numeric_limits<double>::infinity(), bound);
     bound.aboveAndBelow(-nut.height, 0.0);
-    for (int i = 0; i < 6; ++i) {
-        const double phi = i * std::numbers::pi / 3.0;
-        bound.beyond({std::cos(phi), std::sin(phi), 0.0}, 0.5 * nut.width);
-    }
+    bound.beyond(outwards(bound.middle), 0.5 * nut.outer_diameter);
     if (nut.chamfer > 0.0) {
         addRoundMouth(crest, nut.chamfer, bound);
         bound.set([&](const Vec3& p) {

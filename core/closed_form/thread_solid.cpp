@@ -120,22 +120,11 @@ void addRidges(const ThreadForm& form, double middle, bool hollow, const Lump& r
     }
 }
 
-/// The hexagon's sides, with their edges.
-void addHexagon(const shape::ThreadNut& nut, Lump& lump, SmoothSolid& solid) {
-    const double half = 0.5 * nut.width, corner = nut.width / std::numbers::sqrt3;
-    const auto direction = [](double sixths) {
-        const double phi = sixths * std::numbers::pi / 3.0;
-        return Vec3(std::cos(phi), std::sin(phi), 0.0);
-    };
-    const Vec3 down(0.0, 0.0, -nut.height);
-    const auto edge = [&](const Vec3& from, const Vec3& to) { solid.edges.push_back(straight(from, to)); };
-    for (int i = 0; i < 6; ++i) {
-        const Vec3 normal = direction(i), from = corner * direction(i - 0.5), to = corner * direction(i + 0.5);
-        lump.faces.push_back(plane(half * normal, normal));
-        edge(from, to);
-        edge(from + down, to + down);
-        edge(from, from + down);
-    }
+/// Its outside, with both rims.
+void addRing(const shape::ThreadNut& nut, Lump& lump, SmoothSolid& solid) {
+    const double radius = 0.5 * nut.outer_diameter;
+    lump.faces.push_back(cylinder(Vec3::Zero(), Vec3::UnitZ(), radius));
+    for (const double end : {0.0, -nut.height}) solid.edges.push_back(circle(radius, end));
 }
 
 }  // namespace
@@ -169,7 +158,7 @@ SmoothSolid threadSolid(const shape::ThreadNut& nut) {
     SmoothSolid solid;
     Lump around;
     addEnds(-nut.height, 0.0, around);
-    addHexagon(nut, around, solid);
+    addRing(nut, around, solid);
     const double mouth = form.inner + nut.chamfer;
     if (nut.chamfer > 0.0) {
         around.faces.push_back(cone(Vec3::Zero(), Vec3::UnitZ(), mouth, 1.0, true));

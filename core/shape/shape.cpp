@@ -30,8 +30,8 @@ public:
     void length(const char* key, double value) {
         if (!(value > 0.0 && value <= kLongest)) add(key, value, "must be a length above 0 m, at most 1000 m");
     }
-    void chamfer(double value) {
-        if (!(value >= 0.0 && value <= kLongest)) add("chamfer", value, "must be a length, 0 m or more (0 = sharp)");
+    void chamferOrClearance(const char* key, double value) {
+        if (!(value >= 0.0 && value <= kLongest)) add(key, value, "must be a length, 0 m or more (0 = none)");
     }
     /// True if it is, by more than rounding: of what is between the two something must be left.
     bool less(const char* key, double value, double limit, const std::string& requirement) {
@@ -97,14 +97,25 @@ Dimensions dimensionsOf(const KeyedBorePlate& p) {
             {"bore_depth", p.bore_depth}, {"chamfer", p.chamfer}};
 }
 Dimensions dimensionsOf(const ThreadBolt& b) {
-    return {{"diameter", b.diameter}, {"pitch", b.pitch}, {"length", b.length}, {"chamfer", b.chamfer}};
+    return {{"nominal_diameter", b.nominal_diameter},
+            {"pitch", b.pitch},
+            {"length", b.length},
+            {"chamfer", b.chamfer},
+            {"clearance", b.clearance}};
 }
 Dimensions dimensionsOf(const ThreadNut& n) {
-    return {
-        {"diameter", n.diameter}, {"pitch", n.pitch}, {"width", n.width}, {"height", n.height}, {"chamfer", n.chamfer}};
+    return {{"nominal_diameter", n.nominal_diameter},
+            {"pitch", n.pitch},
+            {"outer_diameter", n.outer_diameter},
+            {"height", n.height},
+            {"chamfer", n.chamfer},
+            {"clearance", n.clearance}};
 }
 
 constexpr double kMostTurns = 100.0, kMostTurnsOfNut = 12.0;  // all of a nut's turns touch at once
+
+constexpr double kMostClearance = 0.25;  // of a pitch: more lets flanks pass each other
+constexpr const char* kLittleClearance = "must be less than a quarter of the pitch";
 
 constexpr const char* kMouthInside = "the widened mouth must lie inside the plate's top face";
 
@@ -172,15 +183,18 @@ bool checkThread(double diameter, double pitch, double length, const char* key, 
 }
 
 void checkTogether(const ThreadBolt& b, Check& check) {
-    checkThread(b.diameter, b.pitch, b.length, "length", kMostTurns, check) &&
-        check.less("chamfer", b.chamfer, std::min(0.5 * b.diameter, b.length),
+    checkThread(b.nominal_diameter, b.pitch, b.length, "length", kMostTurns, check) &&
+        check.less("clearance", b.clearance, kMostClearance * b.pitch, kLittleClearance) &&
+        check.less("chamfer", b.chamfer, std::min(threadOf(b).outer, b.length),
                    "must be less than half the diameter and less than the length");
 }
 
 void checkTogether(const ThreadNut& n, Check& check) {
-    checkThread(n.diameter, n.pitch, n.height, "height", kMostTurnsOfNut, check) &&
-        check.less("diameter", n.diameter, n.width, "must be less than the width across flats") &&
-        check.less("chamfer", n.chamfer, std::min(0.5 * n.width - threadOf(n).inner, 0.5 * n.height),
+    checkThread(n.nominal_diameter, n.pitch, n.height, "height", kMostTurnsOfNut, check) &&
+        check.less("clearance", n.clearance, kMostClearance * n.pitch, kLittleClearance) &&
+        check.less("nominal_diameter", n.nominal_diameter, n.outer_diameter - 2.0 * n.clearance,
+                   "must be less than the outer diameter, by the clearance on both sides") &&
+        check.less("chamfer", n.chamfer, std::min(0.5 * n.outer_diameter - threadOf(n).inner, 0.5 * n.height),
                    "the widened mouths must lie inside the nut's faces, each within half its height");
 }
 
@@ -212,8 +226,8 @@ std::vector<double> dimensions(const Shape& shape) {
 std::vector<Error> validate(const Shape& shape) {
     Check check(kindName(shape));
     for (const auto& [key, value] : namedDimensions(shape)) {
-        if (std::string_view(key) == "chamfer")
-            check.chamfer(value);
+        if (const std::string_view name = key; name == "chamfer" || name == "clearance")
+            check.chamferOrClearance(key, value);
         else
             check.length(key, value);
     }

@@ -66,18 +66,20 @@ struct KeyedBorePlate {
 };
 /// A bar with a thread along its whole length: see thread.h. In the plane y = 0, x > 0 a ridge's middle is at z = 0.
 struct ThreadBolt {
-    double diameter;  // over the crests
+    double nominal_diameter;  // over the crests, without clearance
     double pitch, length;
-    double chamfer;  // 45° at the tip; 0 = sharp
+    double chamfer;          // 45° at the tip; 0 = sharp
+    double clearance = 0.0;  // by which the whole profile lies within the nominal one, towards the axis
 };
-/// A hexagonal block with a threaded hole right through, along z: see thread.h. Two flats are normal to x. In the plane
-/// y = 0, x > 0 a groove's middle is at z = 0, so that a bolt fits in it at the same pose.
+/// A ring with a threaded hole right through, along z: see thread.h. In the plane y = 0, x > 0 a groove's middle is at
+/// z = 0, so that a bolt fits in it at the same pose.
 struct ThreadNut {
-    double diameter;  // over the roots
+    double nominal_diameter;  // over the roots, without clearance
     double pitch;
-    double width;    // across flats
-    double height;   // along z
-    double chamfer;  // 45° at both mouths, from the crests on; 0 = sharp
+    double outer_diameter;
+    double height;           // along z
+    double chamfer;          // 45° at both mouths, from the crests on; 0 = sharp
+    double clearance = 0.0;  // by which the whole profile lies outside of the nominal one
 };
 
 using Shape = std::variant<Sphere, Box, Cylinder, Torus, Sheet, Peg, SquarePeg, KeyedPeg, BorePlate, SquareBorePlate,

@@ -339,7 +339,7 @@ struct ThicknessesOf {
         return {rod(2.0 * threadOf(s).inner, s.length), {0.5 * s.pitch, FeatureKind::Wall, true}};
     }
     List operator()(const ThreadNut& s) const {
-        return {{0.5 * (s.width - s.diameter), FeatureKind::Wall, true},
+        return {{0.5 * s.outer_diameter - threadOf(s).outer, FeatureKind::Wall, true},
                 {s.height, FeatureKind::Wall, true},
                 {0.5 * s.pitch, FeatureKind::Wall, true}};
     }

@@ -10,8 +10,8 @@ namespace passung::shape {
 /// A thread by ISO 68-1: right-handed, one start, flanks 60° apart, crest and root flat. Frame: axis z. In the half
 /// plane at the angle φ its profile is r(ζ), ζ = z - lead φ, of period `pitch`:
 ///   |ζ| <= pitch/16: outer;  |ζ| >= 3/8 pitch: inner;  straight flanks between,  outer - inner = 5/8 · √3/2 · pitch.
-/// Of a bolt that is the material's end, of a nut the hole's. So a bolt of the nut's diameter fills it, and one that is
-/// less by 2c has the play c at crests and roots, c/2 between flanks.
+/// Of a bolt that is the material's end, of a nut the hole's. So a bolt fills a nut of its diameter; with clearances
+/// that add up to c it has the play c at crests and roots, c/2 between flanks.
 struct ThreadForm {
     double pitch, outer, inner;  // [m]
 
@@ -31,7 +31,11 @@ struct ThreadForm {
 };
 
 ThreadForm threadOf(double diameter, double pitch);
-inline ThreadForm threadOf(const ThreadBolt& bolt) { return threadOf(bolt.diameter, bolt.pitch); }
-inline ThreadForm threadOf(const ThreadNut& nut) { return threadOf(nut.diameter, nut.pitch); }
+inline ThreadForm threadOf(const ThreadBolt& bolt) {
+    return threadOf(bolt.nominal_diameter - 2.0 * bolt.clearance, bolt.pitch);
+}
+inline ThreadForm threadOf(const ThreadNut& nut) {
+    return threadOf(nut.nominal_diameter + 2.0 * nut.clearance, nut.pitch);
+}
 
 }  // namespace passung::shape

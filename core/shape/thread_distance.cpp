@@ -2,7 +2,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/shape/hexagon.h"
 #include "core/shape/profile.h"
 #include "core/shape/thread_surface.h"
 
@@ -129,7 +128,7 @@ double distanceTo(const ThreadBolt& bolt, const Vec3& p) {
 double distanceTo(const ThreadNut& nut, const Vec3& p) {
     const ThreadSurface surface = surfaceOf(nut);
     const double r = radial(p), z = p.z(), phi = std::atan2(p.y(), p.x());
-    const double beside = hexagonDistance(nut.width, p.x(), p.y());
+    const double beside = r - 0.5 * nut.outer_diameter;
     const double above = std::max(surface.low - z, z - surface.high);
     double d2 = std::min(AcrossHalfPlanes(surface, p).least(), square(beside) + square(std::max(above, 0.0)));
     for (const double end : {surface.low, surface.high})

@@ -8,7 +8,6 @@
 
 #include "core/geometry/triangle_builder.h"
 #include "core/shape/circle_steps.h"
-#include "core/shape/hexagon.h"
 
 namespace passung::shape {
 
@@ -119,7 +118,7 @@ struct ThreadSteps {
 
 ThreadSteps stepsFor(const ThreadSurface& surface, double chord_error) {
     const ThreadForm& form = surface.form;
-    double widest = form.outer;
+    double widest = std::max(form.outer, surface.around);
     for (std::size_t i = 0; i < surface.cone_count && surface.hole; ++i)
         widest = std::max({widest, surface.cones[i].base + std::max(surface.cones[i].slope * surface.low,
                                                                     surface.cones[i].slope * surface.high)});
@@ -159,7 +158,7 @@ ThreadSurface surfaceOf(const ThreadBolt& bolt) {
 }
 
 ThreadSurface surfaceOf(const ThreadNut& nut) {
-    ThreadSurface surface{threadOf(nut), -nut.height, 0.0, true, nut.chamfer};
+    ThreadSurface surface{threadOf(nut), -nut.height, 0.0, true, nut.chamfer, 0.5 * nut.outer_diameter};
     if (!(nut.chamfer > 0.0)) return surface;
     const double mouth = surface.form.inner + nut.chamfer;
     surface.cones = {ThreadSurface::Cone{mouth, 1.0}, ThreadSurface::Cone{mouth - nut.height, -1.0}};
@@ -186,13 +185,12 @@ geometry::TriangleMesh tessellateShape(const ThreadNut& nut, double chord_error)
     const ThreadSurface surface = surfaceOf(nut);
     std::vector<double> corners;
     addCorners(surface, corners);
-    for (int k = 0; k < 6; ++k) corners.push_back(pi / 6.0 + pi / 3.0 * k);
     SlicedThread thread(surface, anglesFor(corners, stepsFor(surface, chord_error).segments));
     geometry::TriangleBuilder builder;
     thread.build(builder);
     std::vector<Index> top, bottom;
     for (std::size_t i = 0; i < thread.count(); ++i) {
-        const double phi = thread.angle(i), r = hexagonReach(nut.width, phi);
+        const double phi = thread.angle(i), r = surface.around;
         top.push_back(builder.vertex(r * std::cos(phi), r * std::sin(phi), surface.high));
         bottom.push_back(builder.vertex(r * std::cos(phi), r * std::sin(phi), surface.low));
     }

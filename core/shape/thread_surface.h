@@ -25,6 +25,7 @@ struct ThreadSurface {
     double low, high;      // of z [m]
     bool hole;             // the least radius of the profile and the cones counts of a bolt, the largest of a hole
     double chamfer = 0.0;  // no cone counts farther from an end
+    double around = 0.0;   // radius of the outside of what has the hole
     std::array<ThreadForm::Line, 4> lines = form.lines();
     std::array<Cone, 2> cones{};
     std::size_t cone_count = 0;

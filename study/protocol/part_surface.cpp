@@ -42,11 +42,11 @@ struct GeometryOf {
     PartSurface operator()(const shape::SquarePeg& s) const { return blockExtent(s.width, s.depth, s.length); }
     PartSurface operator()(const shape::KeyedPeg& s) const { return roundExtent(s.diameter, s.length); }
     PartSurface operator()(const shape::ThreadBolt& s) const {
-        return solid({s.diameter, s.diameter, s.length}, threadArea(s.diameter, s.length));
+        return solid({s.nominal_diameter, s.nominal_diameter, s.length}, threadArea(s.nominal_diameter, s.length));
     }
     PartSurface operator()(const shape::ThreadNut& s) const {
-        const PartSurface block = blockExtent(s.width, 2.0 * s.width / std::numbers::sqrt3, s.height);
-        return solid(block.size, block.area + threadArea(s.diameter, s.height));
+        const PartSurface round = roundExtent(s.outer_diameter, s.height);
+        return solid(round.size, round.area + threadArea(s.nominal_diameter, s.height));
     }
     /// With two ends. Flanks make a thread's surface 1.625 times as large as a cylinder's.
     static double threadArea(double diameter, double length) {

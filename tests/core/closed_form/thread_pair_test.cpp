@@ -88,7 +88,7 @@ struct Hand {
         const Pose start = scene.engaged(z);
         const Vec3 lift(0, 0, follows_thread ? scene.lead() * turned : 0.0);
         return {rotationFromVector(tilt(t)) * rotationFromVector(Vec3(0, 0, turned)) * start.q,
-                start.p + lift + scene.bolt.diameter / .008 * way(t)};
+                start.p + lift + scene.bolt.nominal_diameter / .008 * way(t)};
     }
 };
 
@@ -195,7 +195,7 @@ TEST(BoltInNut, PushedAsideRestsAtItsPlay) {
         found = scene.follow(hand);
     }
     EXPECT_TRUE(found.converged);
-    const double radius = scene.nut.diameter / 2 - 0.625 * std::sqrt(3.0) / 2 * scene.nut.pitch;
+    const double radius = scene.nut.nominal_diameter / 2 - 0.625 * std::sqrt(3.0) / 2 * scene.nut.pitch;
     const double least = kPlay / std::sqrt(1.0 + 3.0 * std::pow(scene.lead() / radius, 2));
     EXPECT_GT(scene.X.p.x(), least - 1e-7);
     EXPECT_LT(scene.X.p.x(), kPlay + 1e-7);

@@ -67,7 +67,8 @@ public:
             for (const double z : {0.0, -nut_.height}) nuts(at(radiusAt(nut_, phi, z), z));
         }
         for (const double side : {-1.0, 1.0}) {
-            eachOnHelix(bolt_.diameter / 2, side * bolt_.pitch / 16, 0.0, bolt_.length, bolt_.pitch, kATurn, bolts);
+            eachOnHelix(bolt_.nominal_diameter / 2, side * bolt_.pitch / 16, 0.0, bolt_.length, bolt_.pitch, kATurn,
+                        bolts);
             eachOnHelix(crestOf(nut_), (0.5 + side / 8) * nut_.pitch, -nut_.height, 0.0, nut_.pitch, kATurn, nuts);
         }
         return residualOf(rows, -pull);
@@ -84,7 +85,7 @@ private:
     static double depthOf(const Thread& thread) {
         return 0.625 * std::sqrt(3.0) / 2 * thread.pitch;
     }
-    static double crestOf(const shape::ThreadNut& nut) { return nut.diameter / 2 - depthOf(nut); }
+    static double crestOf(const shape::ThreadNut& nut) { return nut.nominal_diameter / 2 - depthOf(nut); }
 
     /// From the middle of the nearest ridge of material, along the axis.
     static double offRidge(double pitch, const Vec3& p, double of_material) {
@@ -97,8 +98,8 @@ private:
     static std::vector<Wall> wallsOf(const Thread& thread, const Vec3& p, bool is_nut) {
         const double r = std::hypot(p.x(), p.y()), lead = thread.pitch / (2 * std::numbers::pi);
         const double sign = is_nut ? -1.0 : 1.0;
-        const double crest = thread.diameter / 2 - (is_nut ? depthOf(thread) : 0.0);
-        const double root = thread.diameter / 2 - (is_nut ? 0.0 : depthOf(thread));
+        const double crest = thread.nominal_diameter / 2 - (is_nut ? depthOf(thread) : 0.0);
+        const double root = thread.nominal_diameter / 2 - (is_nut ? 0.0 : depthOf(thread));
         const double half = thread.pitch / (is_nut ? 8 : 16), off = offRidge(thread.pitch, p, is_nut ? 0.5 : 0.0);
         const Vec3 out = Vec3(p.x(), p.y(), 0) / r, around(-out.y(), out.x(), 0);
         const double flank = sign * (r - crest) * 0.5 + (std::abs(off) - half) * std::sqrt(3.0) / 2;
@@ -112,18 +113,15 @@ private:
     double depthInBolt(const Vec3& p) const {
         double depth = std::min(p.z(), bolt_.length - p.z());
         if (bolt_.chamfer > 0.0)
-            depth = std::min(depth,
-                             (bolt_.diameter / 2 - bolt_.chamfer + p.z() - std::hypot(p.x(), p.y())) / std::sqrt(2.0));
+            depth = std::min(depth, (bolt_.nominal_diameter / 2 - bolt_.chamfer + p.z() - std::hypot(p.x(), p.y())) /
+                                        std::sqrt(2.0));
         return depth > 0.0 ? std::max(0.0, std::min(depth, depthInThread(bolt_, p, false))) : 0.0;
     }
     double depthInNut(const Vec3& p) const {
         double depth = std::min(-p.z(), nut_.height + p.z());
         if (nut_.chamfer > 0.0)
             depth = std::min(depth, (std::hypot(p.x(), p.y()) - crestOf(nut_) - nut_.chamfer + depth) / std::sqrt(2.0));
-        for (int i = 0; i < 6; ++i) {
-            const double phi = i * std::numbers::pi / 3;
-            depth = std::min(depth, nut_.width / 2 - std::cos(phi) * p.x() - std::sin(phi) * p.y());
-        }
+        depth = std::min(depth, nut_.outer_diameter / 2 - std::hypot(p.x(), p.y()));
         return depth > 0.0 ? std::max(0.0, std::min(depth, depthInThread(nut_, p, true))) : 0.0;
     }
     template <class Thread>
@@ -137,7 +135,7 @@ private:
     static double radiusAt(const Thread& thread, double phi, double z) {
         const double off = std::abs(offRidge(thread.pitch, {std::cos(phi), std::sin(phi), z}, 0.0));
         const double in = (off - thread.pitch / 16) * std::sqrt(3.0);
-        return thread.diameter / 2 - std::clamp(in, 0.0, depthOf(thread));
+        return thread.nominal_diameter / 2 - std::clamp(in, 0.0, depthOf(thread));
     }
 
     void addPoint(Random& random, bool is_nut) {
@@ -157,7 +155,7 @@ private:
         if (is_nut)
             r = std::max(r, crestOf(nut_) + nut_.chamfer - std::min(high - z, z - low));
         else if (bolt_.chamfer > 0.0)
-            r = std::min(r, bolt_.diameter / 2 - bolt_.chamfer + z);
+            r = std::min(r, bolt_.nominal_diameter / 2 - bolt_.chamfer + z);
         (is_nut ? of_nut_ : of_bolt_).emplace_back(r * std::cos(phi), r * std::sin(phi), z);
     }
 

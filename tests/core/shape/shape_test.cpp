@@ -46,9 +46,11 @@ const std::vector<Shape>& allShapes() {
         ThreadBolt{0.008, 0.00125, 0.004, 0.0},
         ThreadBolt{0.008, 0.00125, 0.005, 0.0004},
         ThreadBolt{0.02, 0.005, 0.012, 0.004},
+        ThreadBolt{0.008, 0.00125, 0.004, 0.0, 0.0001},
         ThreadNut{0.008, 0.00125, 0.013, 0.003, 0.0},
         ThreadNut{0.008, 0.00125, 0.013, 0.0033, 0.0003},
         ThreadNut{0.02, 0.005, 0.03, 0.011, 0.0035},
+        ThreadNut{0.008, 0.00125, 0.013, 0.0033, 0.0003, 0.0002},
     };
     return shapes;
 }
@@ -102,6 +104,10 @@ double threadRadius(double diameter, double pitch, const Vec3& p) {
     return diameter / 2 - std::clamp((off - pitch / 16) * std::tan(pi / 3), 0.0, depth);
 }
 
+/// Of the whole profile, which its clearance moves.
+double widthOf(const ThreadBolt& b) { return b.nominal_diameter - 2 * b.clearance; }
+double widthOf(const ThreadNut& n) { return n.nominal_diameter + 2 * n.clearance; }
+
 bool inBlock(double width, double depth, double height, const Vec3& p) {
     return std::abs(p.x()) < width / 2 && std::abs(p.y()) < depth / 2 && p.z() < 0.0 && p.z() > -height;
 }
@@ -139,14 +145,13 @@ bool isInside(const Shape& shape, const Vec3& p) {
         return inBlock(b->width, b->depth, b->height, p) && !in_pocket;
     }
     if (const auto* b = std::get_if<ThreadBolt>(&shape))
-        return z > 0.0 && z < b->length && r < threadRadius(b->diameter, b->pitch, p) &&
-               r < b->diameter / 2 - b->chamfer + (b->chamfer > 0.0 ? z : 0.0);
+        return z > 0.0 && z < b->length && r < threadRadius(widthOf(*b), b->pitch, p) &&
+               r < widthOf(*b) / 2 - b->chamfer + (b->chamfer > 0.0 ? z : 0.0);
     if (const auto* n = std::get_if<ThreadNut>(&shape)) {
-        const double from_mouth = std::min(-z, n->height + z), a = n->width / 2, s = std::sqrt(3.0) / 2;
-        const double crest = n->diameter / 2 - 5.0 / 8 * s * n->pitch;
-        const bool in_hole = r <= threadRadius(n->diameter, n->pitch, p) || r <= crest + n->chamfer - from_mouth;
-        const bool in_hexagon = std::abs(x) < a && std::abs(x / 2 + s * y) < a && std::abs(x / 2 - s * y) < a;
-        return from_mouth > 0.0 && in_hexagon && !in_hole;
+        const double from_mouth = std::min(-z, n->height + z);
+        const double crest = widthOf(*n) / 2 - 5.0 / 8 * std::sqrt(3.0) / 2 * n->pitch;
+        const bool in_hole = r <= threadRadius(widthOf(*n), n->pitch, p) || r <= crest + n->chamfer - from_mouth;
+        return from_mouth > 0.0 && r < n->outer_diameter / 2 && !in_hole;
     }
     if (const auto* b = std::get_if<BorePlate>(&shape)) {
         const double widened = z > -b->chamfer ? b->chamfer + z : 0.0;
@@ -248,15 +253,15 @@ Swept sweep(double low, double high, const Radius& radius) {
 
 Swept sweptBy(const ThreadBolt& b) {
     return sweep(0.0, b.length, [&](double phi, double z) {
-        const double r = threadRadius(b.diameter, b.pitch, {std::cos(phi), std::sin(phi), z});
-        return std::min(r, b.diameter / 2 - b.chamfer + (b.chamfer > 0.0 ? z : 0.0) + (b.chamfer > 0.0 ? 0.0 : 1.0));
+        const double r = threadRadius(widthOf(b), b.pitch, {std::cos(phi), std::sin(phi), z});
+        return std::min(r, widthOf(b) / 2 - b.chamfer + (b.chamfer > 0.0 ? z : 0.0) + (b.chamfer > 0.0 ? 0.0 : 1.0));
     });
 }
 
 Swept sweptBy(const ThreadNut& n) {
     return sweep(-n.height, 0.0, [&](double phi, double z) {
-        const double r = threadRadius(n.diameter, n.pitch, {std::cos(phi), std::sin(phi), z});
-        const double crest = n.diameter / 2 - 5.0 / 8 * std::sqrt(3.0) / 2 * n.pitch;
+        const double r = threadRadius(widthOf(n), n.pitch, {std::cos(phi), std::sin(phi), z});
+        const double crest = widthOf(n) / 2 - 5.0 / 8 * std::sqrt(3.0) / 2 * n.pitch;
         return std::max(r, crest + n.chamfer - std::min(-z, n.height + z));
     });
 }
@@ -264,7 +269,7 @@ Swept sweptBy(const ThreadNut& n) {
 double exactVolume(const Shape& shape) {
     if (const auto* b = std::get_if<ThreadBolt>(&shape)) return sweptBy(*b).volume;
     if (const auto* n = std::get_if<ThreadNut>(&shape))
-        return std::sqrt(3.0) / 2 * n->width * n->width * n->height - sweptBy(*n).volume;
+        return pi / 4 * n->outer_diameter * n->outer_diameter * n->height - sweptBy(*n).volume;
     if (const auto* t = std::get_if<Torus>(&shape))
         return pi * pi / 4 * t->diameter * t->tube_diameter * t->tube_diameter;
     if (const auto* g = std::get_if<SquarePeg>(&shape)) return pegVolume(*g);
@@ -289,7 +294,8 @@ double exactArea(const Shape& shape) {
     if (const auto* b = std::get_if<ThreadBolt>(&shape)) return sweptBy(*b).face + sweptBy(*b).ends;
     if (const auto* n = std::get_if<ThreadNut>(&shape)) {
         const Swept hole = sweptBy(*n);
-        return hole.face + std::sqrt(3.0) * n->width * n->width - hole.ends + 2 * std::sqrt(3.0) * n->width * n->height;
+        const double d = n->outer_diameter;
+        return hole.face + pi / 2 * d * d - hole.ends + pi * d * n->height;
     }
     if (const auto* t = std::get_if<Torus>(&shape)) return pi * pi * t->diameter * t->tube_diameter;
     if (const auto* g = std::get_if<SquarePeg>(&shape)) return pegArea(*g);
@@ -574,7 +580,10 @@ TEST(ShapeValidation, NamesEachValueThatCannotBe) {
     EXPECT_EQ(keysOf(ThreadBolt{0.008, 0.001, 0.0009, 0.0}), Keys{"length"});
     EXPECT_EQ(keysOf(ThreadBolt{0.008, 0.001, 0.2, 0.0}), Keys{"length"});
     EXPECT_EQ(keysOf(ThreadBolt{0.008, 0.001, 0.02, 0.004}), Keys{"chamfer"});
-    EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.008, 0.006, 0.0}), Keys{"diameter"});
+    EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.008, 0.006, 0.0}), Keys{"nominal_diameter"});
+    EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.0083, 0.006, 0.0, 0.0002}), Keys{"nominal_diameter"});
+    EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.013, 0.006, 0.0, 0.00025}), Keys{"clearance"});
+    EXPECT_EQ(keysOf(ThreadBolt{0.008, 0.001, 0.02, 0.0, -0.0001}), Keys{"clearance"});
     EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.013, 0.0121, 0.0}), Keys{"height"});
     EXPECT_EQ(keysOf(ThreadNut{0.008, nan, 0.013, 0.006, 0.0}), Keys{"pitch"});
     EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.013, 0.006, 0.0031}), Keys{"chamfer"});  // mouths meet

@@ -74,7 +74,7 @@ TEST_P(BoltUnderGodObject, TurnsInSmoothlyWithoutOverlap) {
         X_last = out.X_WG;
         const double tilt = (out.X_WG.q * Vec3::UnitZ()).head<2>().norm();
         const double aside = std::abs(out.X_WG.p.z() - kStart - turned * kBolt.pitch / (2.0 * std::numbers::pi));
-        off = std::max(off, aside - 0.5 * kBolt.diameter * tilt);
+        off = std::max(off, aside - 0.5 * kBolt.nominal_diameter * tilt);
         if (i % 20 == 0) deepest = std::max(deepest, truth.overlap(out.X_WG));
     }
     std::sort(spent.begin(), spent.end());
