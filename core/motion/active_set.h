@@ -10,15 +10,15 @@ namespace passung::motion {
 /// A motion of a rigid body in one vector with the unit metre: (Δx, ρ Δφ).
 using Motion = Eigen::Matrix<double, 6, 1>;
 
-/// What a motion must obey: a · u ≥ bound.
+/// What a motion must obey: a · u ≥ bound. Nothing is set beforehand: a solver has hundreds and fills in a few.
 struct MotionRow {
-    Motion a = Motion::Zero();  // unit
-    double bound = 0.0;         // of now
-    double b = 0.0;             // what is asked for, if that can be had
-    double length = 0.0;        // of a before it was made unit; bound and b are per that
-    double gradient = 0.0;      // length of the contact's g
-    std::uint32_t contact = 0;  // its place in the manifold
-    bool sphere = false;        // never asks for more than standing still
+    Motion a;               // unit
+    double bound;           // of now
+    double b;               // what is asked for, if that can be had
+    double length;          // of a before it was made unit; bound and b are per that
+    double gradient;        // length of the contact's g
+    std::uint32_t contact;  // its place in the manifold
+    bool sphere;            // never asks for more than standing still
 };
 
 /// Rows N = Q R that hold a motion u = w + N λ, and their multipliers λ ≥ 0; independent, hence at most six.
