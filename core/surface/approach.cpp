@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace passung::surface {
 
@@ -10,11 +9,6 @@ namespace {
 
 constexpr std::size_t kSide = NormalClass::kSide;
 constexpr std::size_t kCorners = 6 * (kSide + 1) * (kSide + 1);  // those on the cube's edges several times
-
-/// On a cube of edges 2.
-double border(std::size_t k) {
-    return std::tan(std::numbers::pi / 4.0 * (2.0 * static_cast<double>(k) / static_cast<double>(kSide) - 1.0));
-}
 
 /// Side 2 axis + (0: positive, 1: negative); u and v run along the two axes after it.
 Vec3 onSide(std::size_t side, double u, double v) {
@@ -27,17 +21,15 @@ Vec3 onSide(std::size_t side, double u, double v) {
 }
 
 struct NormalCells {
-    std::array<double, kSide + 1> borders;
     std::array<double, kCorners> x, y, z;                                 // unit vectors
     std::array<std::array<std::size_t, 4>, NormalClass::kCount> corners;  // of each cell
     PerClass factor;                                                      // 1 / min c_i · e
 
     NormalCells() {
-        for (std::size_t k = 0; k <= kSide; ++k) borders[k] = border(k);
         for (std::size_t side = 0; side < 6; ++side)
             for (std::size_t i = 0; i <= kSide; ++i)
                 for (std::size_t k = 0; k <= kSide; ++k) {
-                    const Vec3 c = onSide(side, borders[i], borders[k]).normalized();
+                    const Vec3 c = onSide(side, NormalClass::kBorders[i], NormalClass::kBorders[k]).normalized();
                     const std::size_t at = cornerAt(side, i, k);
                     x[at] = c.x();
                     y[at] = c.y();
@@ -63,20 +55,7 @@ struct NormalCells {
 
 const NormalCells kCells;
 
-std::size_t placeOf(double u) noexcept {
-    std::size_t k = 0;
-    while (k + 1 < kSide && u >= kCells.borders[k + 1]) ++k;
-    return k;
-}
-
 }  // namespace
-
-std::size_t NormalClass::of(const Vec3& n) noexcept {
-    Eigen::Index axis = 0;
-    const double along = n.cwiseAbs().maxCoeff(&axis);
-    const std::size_t side = 2 * static_cast<std::size_t>(axis) + (n[axis] < 0.0 ? 1 : 0);
-    return (side * kSide + placeOf(n[(axis + 1) % 3] / along)) * kSide + placeOf(n[(axis + 2) % 3] / along);
-}
 
 void measureApproach(const geometry::Bounds& box, const Mat3& turn, const Vec3& move, PerClass& nearer) noexcept {
     const Vec3 middle = turn * (0.5 * (box.low + box.high)) + move;

@@ -108,7 +108,7 @@ ContactRow rowBetween(const HullPair& pair, const Placement& X0, const Placement
 bool refresh(ContactRow& row, const HullPair& pair, const Placement& X) noexcept {
     row.bend = 0.0;
     if (!row.fixed) {
-        const NearestHulls now = nearestPoints(pair, X, row.n);
+        const NearestHulls now = nearestPoints(pair, X, row.n, row.seed);
         if (now.meets || !(now.separation > 0.0) || now.distance > kFar) return false;
         row.n = now.n;
         row.n_held = X.R.transpose() * now.n;

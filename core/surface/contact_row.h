@@ -20,6 +20,7 @@ struct ContactRow {
     double bend = 0.0;                     // ≤ 0: what the rows' linear motion overlooks [m]
     double push = 0.0;                     // of the last motion [m]: times the coupling's stiffness, its force
     int idle = 0;                          // ticks since it held
+    CornerSeed seed = {};                  // where its points were found
 
     /// Where it acts, world.
     Vec3 point(const Placement& X) const noexcept { return on_held ? p_obstacle : X * p_held; }

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
-#include "core/field/instructions.h"
+#include "core/surface/hull_simplex.h"
 
 namespace passung::surface {
 
@@ -13,12 +14,10 @@ namespace {
 using geometry::kLanes;
 
 constexpr int kMostLooks = 32;
-constexpr double kExact = 1e-4;      // of the distance: left between what is proven and what is reached
-constexpr double kResolved = 1e-11;  // [m], the same
-constexpr double kMost = 0.7;        // of the distance: enough where all of it would not do
-
-using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
-using LanePlaces = std::int64_t __attribute__((vector_size(kLanes * sizeof(double))));
+constexpr double kExact = 1e-4;         // of the distance: left between what is proven and what is reached
+constexpr double kResolved = 1e-11;     // [m], the same
+constexpr double kLeastPlanted = 1e-9;  // [m]: nearer to the origin a simplex of before tells no direction
+constexpr double kMost = 0.7;           // of the distance: enough where all of it would not do
 
 PASSUNG_INLINE void load(const double* from, Lanes& lanes) noexcept { std::memcpy(&lanes, from, sizeof lanes); }
 
@@ -69,116 +68,17 @@ PASSUNG_INLINE Extreme leastAlong(const ClusterTree& tree, const Cluster& cluste
         least = less ? reach : least;
         places = less ? now : places;
     }
-    int best = 0;
-    for (int k = 1; k < static_cast<int>(kLanes); ++k)
-        if (least[k] < least[best] || (least[k] == least[best] && places[k] < places[best])) best = k;
-    return {least[best], cluster.first + static_cast<std::uint32_t>(places[best])};
-}
-
-/// A difference of corners.
-struct CornerDifference {
-    Vec3 w;         // held less obstacle, world
-    Vec3 held;      // part frame
-    Vec3 obstacle;  // world
-    std::uint32_t a = 0, b = 0;
-    bool second = false;  // of the second pose
-};
-
-/// Up to four differences, and the point nearest to the origin of their hull as weights.
-struct Simplex {
-    std::array<CornerDifference, 4> at;
-    std::array<double, 4> weight{};
-    int count = 0;
-    Vec3 v = Vec3::Zero();
-
-    bool has(const CornerDifference& d) const noexcept {
-        for (int i = 0; i < count; ++i) {
-            const CornerDifference& mine = at[static_cast<std::size_t>(i)];
-            if (mine.a == d.a && mine.b == d.b && mine.second == d.second) return true;
-        }
-        return false;
-    }
-};
-
-struct Weights {
-    std::array<double, 4> of{};
-    double square = 1e300;  // of the nearest point's distance
-};
-
-PASSUNG_INLINE void tryPoint(const Simplex& s, std::size_t i, Weights& best) noexcept {
-    const double square = s.at[i].w.squaredNorm();
-    if (!(square < best.square)) return;
-    best = {};
-    best.of[i] = 1.0;
-    best.square = square;
-}
-
-PASSUNG_INLINE void trySegment(const Simplex& s, std::size_t i, std::size_t k, Weights& best) noexcept {
-    const Vec3 &p = s.at[i].w, e = s.at[k].w - p;
-    const double length2 = e.squaredNorm();
-    if (!(length2 > 0.0)) return;
-    const double t = -p.dot(e) / length2;
-    if (!(t > 0.0 && t < 1.0)) return;
-    const double square = (p + t * e).squaredNorm();
-    if (!(square < best.square)) return;
-    best = {};
-    best.of[i] = 1.0 - t;
-    best.of[k] = t;
-    best.square = square;
-}
-
-PASSUNG_INLINE void tryTriangle(const Simplex& s, std::size_t i, std::size_t k, std::size_t l, Weights& best) noexcept {
-    const Vec3 &a = s.at[i].w, &b = s.at[k].w, &c = s.at[l].w;
-    const Vec3 n = (b - a).cross(c - a);
-    const double area2 = n.squaredNorm();
-    if (!(area2 > 1e-20 * (b - a).squaredNorm() * (c - a).squaredNorm())) return;
-    const double u = b.cross(c).dot(n), v = c.cross(a).dot(n), w = a.cross(b).dot(n);
-    if (!(u > 0.0 && v > 0.0 && w > 0.0)) return;
-    const double along = a.dot(n), square = along * along / area2;
-    if (!(square < best.square)) return;
-    const double total = u + v + w;
-    best = {};
-    best.of[i] = u / total;
-    best.of[k] = v / total;
-    best.of[l] = w / total;
-    best.square = square;
-}
-
-/// True if the origin lies in the tetrahedron.
-PASSUNG_INLINE bool holdsOrigin(const Simplex& s) noexcept {
-    const Vec3 &a = s.at[0].w, &b = s.at[1].w, &c = s.at[2].w, &d = s.at[3].w;
-    const double all = (b - a).cross(c - a).dot(d - a);
-    const double scale = std::max({(b - a).norm(), (c - a).norm(), (d - a).norm()});
-    if (!(std::abs(all) > 1e-14 * scale * scale * scale)) return false;
-    const double oa = b.cross(c).dot(d), ob = -a.cross(c).dot(d), oc = a.cross(b).dot(d), od = -a.cross(b).dot(c);
-    return all > 0.0 ? oa >= 0.0 && ob >= 0.0 && oc >= 0.0 && od >= 0.0
-                     : oa <= 0.0 && ob <= 0.0 && oc <= 0.0 && od <= 0.0;
-}
-
-enum class Reduced { Nearer, Stalled, Inside };
-
-/// Finds v and forgets what it does not need. The point nearest to the origin lies on a face of the last difference.
-PASSUNG_INLINE Reduced reduce(Simplex& s) noexcept {
-    Weights best;
-    const auto n = static_cast<std::size_t>(s.count);
-    if (n == 4 && holdsOrigin(s)) return Reduced::Inside;
-    const std::size_t last = n - 1;
-    tryPoint(s, last, best);
-    for (std::size_t i = 0; i < last; ++i) trySegment(s, i, last, best);
-    for (std::size_t i = 0; i < last; ++i)
-        for (std::size_t k = i + 1; k < last; ++k) tryTriangle(s, i, k, last, best);
-    if (n > 1 && !(best.square < s.v.squaredNorm())) return Reduced::Stalled;
-    int kept = 0;
-    s.v.setZero();
-    for (std::size_t i = 0; i < n; ++i) {
-        if (best.of[i] == 0.0) continue;
-        const auto to = static_cast<std::size_t>(kept++);
-        if (to != i) s.at[to] = s.at[i];
-        s.weight[to] = best.of[i];
-        s.v += best.of[i] * s.at[to].w;
-    }
-    s.count = kept;
-    return Reduced::Nearer;
+    Lanes other = __builtin_shufflevector(least, least, 2, 3, 0, 1);
+    Lanes all = other < least ? other : least;
+    other = __builtin_shufflevector(all, all, 1, 0, 3, 2);
+    all = other < all ? other : all;
+    constexpr std::int64_t kNowhere = std::numeric_limits<std::int64_t>::max();
+    places = least == all ? places : LanePlaces{kNowhere, kNowhere, kNowhere, kNowhere};
+    LanePlaces place = __builtin_shufflevector(places, places, 2, 3, 0, 1);
+    places = place < places ? place : places;
+    place = __builtin_shufflevector(places, places, 1, 0, 3, 2);
+    places = place < places ? place : places;
+    return {all[0], cluster.first + static_cast<std::uint32_t>(places[0])};
 }
 
 /// Corners of the held hull at one or two poses.
@@ -193,23 +93,56 @@ PASSUNG_INLINE HeldReach leastOfHeld(const HullPair& pair, const Placement& X, c
     return {e.reach + n.dot(X.p), e.corner, false};
 }
 
-void describe(const Simplex& s, NearestHulls& result) noexcept {
-    result.on_held.setZero();
-    result.on_obstacle.setZero();
-    result.held_at_corner = result.obstacle_at_corner = s.count > 0;
-    for (int i = 0; i < s.count; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        result.on_held += s.weight[k] * s.at[k].held;
-        result.on_obstacle += s.weight[k] * s.at[k].obstacle;
-        result.held_at_corner = result.held_at_corner && s.at[k].a == s.at[0].a;
-        result.obstacle_at_corner = result.obstacle_at_corner && s.at[k].b == s.at[0].b;
+PASSUNG_INLINE void describe(const HullPair& pair, const Simplex& s, NearestHulls& result) noexcept {
+    result.held_at_corner = result.obstacle_at_corner = true;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(s.count); ++i) {
+        sum += s.weight[i];
+        result.on_held += s.weight[i] * pair.held.corner(s.of[i].held);
+        result.on_obstacle += s.weight[i] * pair.obstacle.corner(s.of[i].obstacle);
+        result.held_at_corner = result.held_at_corner && s.of[i].held == s.of[0].held;
+        result.obstacle_at_corner = result.obstacle_at_corner && s.of[i].obstacle == s.of[0].obstacle;
     }
-    result.corner_held = s.at[0].a;
-    result.corner_obstacle = s.at[0].b;
+    result.on_held /= sum;
+    result.on_obstacle /= sum;
+    // Exactly there.
+    if (result.held_at_corner) result.on_held = pair.held.corner(s.of[0].held);
+    if (result.obstacle_at_corner) result.on_obstacle = pair.obstacle.corner(s.of[0].obstacle);
+}
+
+/// What is asked for.
+struct Aim {
+    double enough = 1e300, hopeless = 0.0;
+    const PerClass* enough_of = nullptr;  // of classes of normals, instead
+    CornerSeed* seed = nullptr;
+    bool points = false;  // wanted too
+};
+
+/// Begins with corners of before, at the last pose.
+PASSUNG_INLINE void plant(const HullPair& pair, const Placement& X, bool second, const CornerSeed& seed,
+                          Simplex& s) noexcept {
+    std::array<Vec3, 3> at;
+    std::array<CornerPair, 3> of;
+    const std::size_t count = seed.count;
+    for (std::size_t i = 0; i < count; ++i) {
+        of[i] = {pair.of_held.first + seed.held[i], pair.of_obstacle.first + seed.obstacle[i], second};
+        at[i] = X * pair.held.corner(of[i].held) - pair.obstacle.corner(of[i].obstacle);
+    }
+    if (count == 3 && s.takeTriangle(at, of)) return;
+    for (std::size_t i = 0; i < count; ++i) s.add(at[i], of[i]);
+}
+
+PASSUNG_INLINE void keep(const HullPair& pair, const Simplex& s, CornerSeed& seed) noexcept {
+    seed.count = static_cast<std::uint16_t>(s.count);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(s.count); ++i) {
+        seed.held[i] = static_cast<std::uint16_t>(s.of[i].held - pair.of_held.first);
+        seed.obstacle[i] = static_cast<std::uint16_t>(s.of[i].obstacle - pair.of_obstacle.first);
+    }
 }
 
 PASSUNG_INLINE NearestHulls iterateIn(const HullPair& pair, const Placement& X0, const Placement* X1, const Vec3& from,
-                                      double enough, double hopeless) noexcept {
+                                      const Aim& aim) noexcept {
+    const double enough = aim.enough, hopeless = aim.hopeless;
     NearestHulls result;
     Simplex s;
     Vec3 v = from;
@@ -222,8 +155,18 @@ PASSUNG_INLINE NearestHulls iterateIn(const HullPair& pair, const Placement& X0,
             norm = 1.0;
         }
     }
+    if (aim.seed != nullptr && aim.seed->count > 0) {
+        plant(pair, X1 != nullptr ? *X1 : X0, X1 != nullptr, *aim.seed, s);
+        const double least = s.v.norm();
+        if (least > kLeastPlanted) {
+            v = s.v;
+            norm = least;
+        } else {
+            s.count = 0;
+        }
+    }
     for (result.looks = 1; result.looks <= kMostLooks; ++result.looks) {
-        const Vec3 n = v / norm;
+        const Vec3 n = v * (1.0 / norm);
         HeldReach held = leastOfHeld(pair, X0, n);
         if (X1 != nullptr) {
             HeldReach then = leastOfHeld(pair, *X1, n);
@@ -235,6 +178,7 @@ PASSUNG_INLINE NearestHulls iterateIn(const HullPair& pair, const Placement& X0,
         if (separation > result.separation) {
             result.separation = separation;
             result.n = n;
+            if (aim.enough_of != nullptr && separation >= (*aim.enough_of)[NormalClass::of(n)]) break;
         }
         if (result.separation >= enough) break;
         if (s.count > 0) {
@@ -242,45 +186,39 @@ PASSUNG_INLINE NearestHulls iterateIn(const HullPair& pair, const Placement& X0,
             if (norm < hopeless) break;  // no plane can do
             if (norm < enough && hopeless > 0.0 && result.separation > std::max(hopeless, kMost * norm)) break;
         }
-        CornerDifference d;
-        d.a = held.corner;
-        d.b = obstacle.corner;
-        d.second = held.second;
-        if (s.has(d)) break;
-        d.held = pair.held.corner(d.a);
-        d.obstacle = pair.obstacle.corner(d.b);
-        d.w = (d.second ? *X1 : X0) * d.held - d.obstacle;
-        s.at[static_cast<std::size_t>(s.count++)] = d;
-        const Reduced reduced = reduce(s);
-        if (reduced == Reduced::Stalled) {
-            --s.count;
-            break;
-        }
-        if (reduced == Reduced::Inside) {
-            result.meets = true;
-            break;
-        }
+        const CornerPair corners{held.corner, obstacle.corner, held.second};
+        if (s.has(corners)) break;
+        const Vec3 difference =
+            (held.second ? *X1 : X0) * pair.held.corner(corners.held) - pair.obstacle.corner(corners.obstacle);
+        const Simplex::Reduced reduced = s.add(difference, corners);
+        if (reduced == Simplex::Reduced::Stalled) break;
         v = s.v;
         norm = v.norm();
-        if (!(norm > 1e-13)) {
+        if (reduced == Simplex::Reduced::Inside || !(norm > 1e-13)) {
             result.meets = true;
             break;
         }
     }
+    if (aim.seed != nullptr) {
+        if (result.meets)
+            aim.seed->count = 0;
+        else
+            keep(pair, s, *aim.seed);
+    }
     result.distance = result.meets ? 0.0 : std::max(norm, result.separation);
-    if (!result.meets && s.count > 0) describe(s, result);
+    if (aim.points && !result.meets && s.count > 0) describe(pair, s, result);
     return result;
 }
 
 PASSUNG_V3 NearestHulls iterateV3(const HullPair& pair, const Placement& X0, const Placement* X1, const Vec3& from,
-                                  double enough, double hopeless) noexcept {
-    const NearestHulls result = iterateIn(pair, X0, X1, from, enough, hopeless);
+                                  const Aim& aim) noexcept {
+    const NearestHulls result = iterateIn(pair, X0, X1, from, aim);
     PASSUNG_CLEAR_UPPER();
     return result;
 }
 NearestHulls iterateBaseline(const HullPair& pair, const Placement& X0, const Placement* X1, const Vec3& from,
-                             double enough, double hopeless) noexcept {
-    return iterateIn(pair, X0, X1, from, enough, hopeless);
+                             const Aim& aim) noexcept {
+    return iterateIn(pair, X0, X1, from, aim);
 }
 PASSUNG_V3 double leastReachV3(const ClusterTree& tree, const Cluster& cluster, const Vec3& way) noexcept {
     const double reach = leastReach(tree, cluster, way);
@@ -293,10 +231,15 @@ double leastReachBaseline(const ClusterTree& tree, const Cluster& cluster, const
 
 const bool kHasV3 = field::bestInstructions() >= field::Instructions::V3;
 
-NearestHulls iterate(const HullPair& pair, const Placement& X0, const Placement* X1, const Vec3& from, double enough,
-                     double hopeless) noexcept {
-    return kHasV3 ? iterateV3(pair, X0, X1, from, enough, hopeless)
-                  : iterateBaseline(pair, X0, X1, from, enough, hopeless);
+NearestHulls iterate(const HullPair& pair, const Placement& X0, const Placement* X1, const Vec3& from,
+                     const Aim& aim) noexcept {
+    return kHasV3 ? iterateV3(pair, X0, X1, from, aim) : iterateBaseline(pair, X0, X1, from, aim);
+}
+
+/// Null: more corners than a seed can tell.
+CornerSeed* seedFor(const HullPair& pair, CornerSeed& seed) noexcept {
+    constexpr std::uint32_t kTold = std::numeric_limits<std::uint16_t>::max();
+    return pair.of_held.count <= kTold && pair.of_obstacle.count <= kTold ? &seed : nullptr;
 }
 
 }  // namespace
@@ -310,18 +253,27 @@ double separationAlong(const HullPair& pair, const Placement& X, const Vec3& n) 
            leastReachOf(pair.obstacle, pair.of_obstacle, -n);
 }
 
+NearestHulls nearestHulls(const HullPair& pair, const Placement& X, const Vec3& from, const PerClass& enough,
+                          double hopeless) noexcept {
+    return iterate(pair, X, nullptr, from, {.hopeless = hopeless, .enough_of = &enough});
+}
+
 NearestHulls nearestHulls(const HullPair& pair, const Placement& X, const Vec3& from, double enough,
                           double hopeless) noexcept {
-    return iterate(pair, X, nullptr, from, enough, hopeless);
+    return iterate(pair, X, nullptr, from, {.enough = enough, .hopeless = hopeless});
 }
 
 NearestHulls nearestHulls(const HullPair& pair, const Placement& X0, const Placement& X1, const Vec3& from,
-                          double enough, double hopeless) noexcept {
-    return iterate(pair, X0, &X1, from, enough, hopeless);
+                          double enough, double hopeless, CornerSeed& seed) noexcept {
+    return iterate(pair, X0, &X1, from, {.enough = enough, .hopeless = hopeless, .seed = seedFor(pair, seed)});
 }
 
 NearestHulls nearestPoints(const HullPair& pair, const Placement& X, const Vec3& from) noexcept {
-    return iterate(pair, X, nullptr, from, 1e300, 0.0);
+    return iterate(pair, X, nullptr, from, {.points = true});
+}
+
+NearestHulls nearestPoints(const HullPair& pair, const Placement& X, const Vec3& from, CornerSeed& seed) noexcept {
+    return iterate(pair, X, nullptr, from, {.seed = seedFor(pair, seed), .points = true});
 }
 
 }  // namespace passung::surface

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/geometry/cluster_tree.h"
+#include "core/surface/approach.h"
 
 namespace passung::surface {
 
@@ -33,14 +34,20 @@ double separationAlong(const HullPair& pair, const Placement& X, const Vec3& n) 
 /// How far the hull of a cluster reaches along `way` at least, in the cluster's own frame. rt-safe.
 double leastReachOf(const ClusterTree& tree, const Cluster& cluster, const Vec3& way) noexcept;
 
+/// Corners whose differences the point nearest to the origin lay between last: a search that begins with them ends soon
+/// where a pose has changed little. None: it begins with a direction.
+struct CornerSeed {
+    std::array<std::uint16_t, 3> held{}, obstacle{};  // of those of the hull
+    std::uint16_t count = 0;
+};
+
 /// Where two hulls come nearest.
 struct NearestHulls {
-    Vec3 n = Vec3::Zero();                               // unit, from the obstacle to the held part, world
-    double separation = -1e300;                          // proven along n: no greater than the distance [m]
-    double distance = 0.0;                               // no less than the true one [m]
-    Vec3 on_held = Vec3::Zero();                         // part frame
-    Vec3 on_obstacle = Vec3::Zero();                     // world
-    std::uint32_t corner_held = 0, corner_obstacle = 0;  // those points, where they are corners
+    Vec3 n = Vec3::Zero();            // unit, from the obstacle to the held part, world
+    double separation = -1e300;       // proven along n: no greater than the distance [m]
+    double distance = 0.0;            // no less than the true one [m]
+    Vec3 on_held = Vec3::Zero();      // part frame; this and what follows: of nearestPoints() alone
+    Vec3 on_obstacle = Vec3::Zero();  // world
     bool held_at_corner = false, obstacle_at_corner = false;
     bool meets = false;
     int looks = 0;
@@ -52,12 +59,17 @@ struct NearestHulls {
 /// v·w/|v|, or joins the simplex. Every plane is judged by the corners themselves: whatever the iteration does,
 /// `separation` holds.
 /// `from`: a direction to begin with. Ends where `enough` is proven, where a distance of `hopeless` cannot be reached,
-/// or where more than that and most of a distance that is less than `enough` is proven. rt-safe, bounded.
+/// or where more than that and most of a distance that is less than `enough` is proven. `seed`: to begin with, and what
+/// is left at the end. rt-safe, bounded.
+/// `enough`: of the plane's class of normals.
+NearestHulls nearestHulls(const HullPair& pair, const Placement& X, const Vec3& from, const PerClass& enough,
+                          double hopeless) noexcept;
 NearestHulls nearestHulls(const HullPair& pair, const Placement& X, const Vec3& from, double enough,
                           double hopeless) noexcept;
 NearestHulls nearestHulls(const HullPair& pair, const Placement& X0, const Placement& X1, const Vec3& from,
-                          double enough, double hopeless) noexcept;
+                          double enough, double hopeless, CornerSeed& seed) noexcept;
 /// To the end, with the points.
 NearestHulls nearestPoints(const HullPair& pair, const Placement& X, const Vec3& from) noexcept;
+NearestHulls nearestPoints(const HullPair& pair, const Placement& X, const Vec3& from, CornerSeed& seed) noexcept;
 
 }  // namespace passung::surface

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace passung::surface {
 
@@ -161,11 +162,17 @@ std::size_t PairForest::wake(std::size_t normals, double s, std::size_t most) no
         const std::size_t slot = slotOf(normals, next);
         if (!first && woken + counts_[slot] > most) break;
         woken += counts_[slot];
-        while (heads_[slot] != kNone) {
-            const std::uint32_t pair = heads_[slot];
-            takeOut(pair);
-            wait(pair);
+        counts_[slot] = 0;
+        mark(slot, false);
+        std::uint32_t last = heads_[slot];
+        if (last == kNone) continue;
+        for (std::uint32_t pair = last; pair != kNone; pair = pairs_[pair].after) {
+            pairs_[pair].now = ClusterPair::Now::Waiting;
+            last = pair;
         }
+        pairs_[last].after = waiting_;
+        if (waiting_ != kNone) pairs_[waiting_].before = last;
+        waiting_ = std::exchange(heads_[slot], kNone);
     }
     return woken;
 }

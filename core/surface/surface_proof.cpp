@@ -31,19 +31,16 @@ HullPair SurfaceProxy::hulls(std::uint32_t pair) const noexcept {
     return {*held_, *obstacles_, (*held_)[of.held], (*obstacles_)[of.obstacle]};
 }
 
-bool SurfaceProxy::isFacePair(std::uint32_t pair) const noexcept {
-    return (*held_)[forest_[pair].held].isFace() && (*obstacles_)[forest_[pair].obstacle].isFace();
-}
-
-double SurfaceProxy::sleepBeyond(std::size_t normals) const noexcept {
-    return std::max({kSeen, std::max(kMargin * ahead_[normals], usual_[normals]) + gap_ + 2.0 * PairForest::kBucket,
-                     forest_.sureOf(normals) + PairForest::kBucket});
+void SurfaceProxy::setSleeps() noexcept {
+    for (std::size_t c = 0; c < NormalClass::kCount; ++c)
+        sleeps_[c] = std::max({kSeen, std::max(kMargin * ahead_[c], usual_[c]) + gap_ + 2.0 * PairForest::kBucket,
+                               forest_.sureOf(c) + PairForest::kBucket});
 }
 
 bool SurfaceProxy::settle() noexcept {
     if (forest_.hasWaiting()) {
-        double any = 0.0;
-        for (std::size_t c = 0; c < NormalClass::kCount; ++c) any = std::max(any, sleepBeyond(c));
+        setSleeps();
+        const double any = *std::max_element(sleeps_.begin(), sleeps_.end());
         while (forest_.hasWaiting()) {
             if (spent()) return false;
             sort(forest_.takeWaiting(), any);
@@ -55,7 +52,9 @@ bool SurfaceProxy::settle() noexcept {
 
 void SurfaceProxy::push(std::uint32_t pair, const Vec3& n, double s, bool meets) noexcept {
     forest_[pair].now = ClusterPair::Now::Near;
-    near_[near_count_++] = {n, n, s, s, pair, meets};
+    const HullPair of = hulls(pair);
+    const bool faces = of.of_held.isFace() && of.of_obstacle.isFace();
+    near_[near_count_++] = {n, n, s, s, of.of_held.centre, of.of_held.radius, pair, meets, faces, {}};
 }
 
 /// Finds out whether a pair that waits is far, near, or too near to be one. `any`: a pair farther apart sleeps whatever
@@ -68,16 +67,10 @@ void SurfaceProxy::sort(std::uint32_t at, double any) noexcept {
     const double by_balls = apart - pair.of_held.radius - pair.of_obstacle.radius;
     if (by_balls >= any) return fallAsleep(at, between / apart, by_balls);
     const Vec3 last = forest_[at].n;
-    if (!last.isZero()) {
-        const double s = separationAlong(pair, P_, last);
-        tick_.work += workOf(pair);
-        if (s >= sleepBeyond(NormalClass::of(last))) return fallAsleep(at, last, s);
-    }
     const bool faces = pair.of_held.isFace() && pair.of_obstacle.isFace();
-    const NearestHulls nearest = nearestHulls(pair, P_, last, any, faces ? kRounding : gap_);
+    const NearestHulls nearest = nearestHulls(pair, P_, last, sleeps_, faces ? kRounding : gap_);
     tick_.work += nearest.looks * workOf(pair);
-    if (nearest.separation >= sleepBeyond(NormalClass::of(nearest.n)))
-        return fallAsleep(at, nearest.n, nearest.separation);
+    if (sleeps(nearest.n, nearest.separation)) return fallAsleep(at, nearest.n, nearest.separation);
     if (nearest.separation > (faces ? 0.0 : gap_)) return push(at, nearest.n, nearest.separation, false);
     if (faces) return push(at, nearest.n, 0.0, true);
     const std::uint32_t child = splitPair(at);
@@ -89,6 +82,7 @@ void SurfaceProxy::sort(std::uint32_t at, double any) noexcept {
 /// Puts a pair to sleep, and where its sibling sleeps too and both are far, their parent in their place.
 void SurfaceProxy::fallAsleep(std::uint32_t at, const Vec3& n, double s) noexcept {
     for (;;) {
+        ++tick_.work;
         forest_.sleep(at, n, s);
         const std::uint32_t parent = forest_[at].parent;
         if (parent == ClusterPair::kNoPair || s < kMergeBeyond) return;
@@ -125,7 +119,7 @@ std::uint32_t SurfaceProxy::splitPair(std::uint32_t at) noexcept {
 
 /// A near pair's children take its place.
 bool SurfaceProxy::trySplit(std::size_t at) noexcept {
-    if (isFacePair(near_[at].pair) || near_count_ == near_.size()) return false;
+    if (near_[at].faces || near_count_ == near_.size()) return false;
     const NearPair whole = near_[at];
     const std::uint32_t child = splitPair(whole.pair);
     if (child == ClusterPair::kNoPair) return false;
@@ -155,7 +149,7 @@ SurfaceProxy::Checked SurfaceProxy::check() noexcept {
             continue;
         }
         if (trySplit(at_)) continue;
-        if (overlaps_ && isFacePair(near_[at_].pair)) {
+        if (overlaps_ && near_[at_].faces) {
             near_[at_++].meets = true;  // a face that is left from its back
             continue;
         }
@@ -169,22 +163,24 @@ SurfaceProxy::Checked SurfaceProxy::check() noexcept {
 
 /// True if the pair stays apart at the end of the look and on the way.
 bool SurfaceProxy::proves(NearPair& near) noexcept {
-    const HullPair pair = hulls(near.pair);
-    const bool faces = pair.of_held.isFace() && pair.of_obstacle.isFace();
-    const double need = needOf(near.s, faces);
+    const double need = needOf(near.s, near.faces);
     const double on_the_way = kOnTheWay * need + arc_ + kRounding;
     near.n_next = near.n;
     ++tick_.work;
     if (near.s >= on_the_way) {
         const Vec3 m = turn_.transpose() * near.n;
-        near.s_next = near.s + near.n.dot(move_) + m.dot(pair.of_held.centre) - m.norm() * pair.of_held.radius;
+        near.s_next = near.s + near.n.dot(move_) + m.dot(near.centre) - m.norm() * near.radius;
         if (near.s_next >= need && near.s_next >= on_the_way) return true;
+    }
+    const HullPair pair = hulls(near.pair);
+    if (near.s >= on_the_way) {
         near.s_next = separationAlong(pair, P_next_, near.n);
         tick_.work += workOf(pair);
         if (near.s_next >= need && near.s_next >= on_the_way) return true;
     }
     const double enough = std::max(need, on_the_way);
-    const NearestHulls swept = nearestHulls(pair, P_, P_next_, near.n, enough + kAhead * way_, enough);
+    const NearestHulls swept =
+        nearestHulls(pair, P_, P_next_, near.n, enough + kAhead * way_, near.faces ? on_the_way : enough, near.seed);
     tick_.work += swept.looks * workOf(pair);
     if (swept.separation >= enough) {
         near.n = near.n_next = swept.n;
@@ -192,27 +188,29 @@ bool SurfaceProxy::proves(NearPair& near) noexcept {
         near.s_next = separationAlong(pair, P_next_, swept.n);
         return true;
     }
-    return faces && provesFaces(near, pair);
+    return near.faces && provesFaces(near, pair, swept.separation);
 }
 
-/// With the planes that are best at either end.
-bool SurfaceProxy::provesFaces(NearPair& near, const HullPair& pair) noexcept {
-    const NearestHulls now = nearestPoints(pair, P_, near.n);
+/// With the planes that are best at either end. `swept`: what one plane sets both ends apart by.
+bool SurfaceProxy::provesFaces(NearPair& near, const HullPair& pair, double swept) noexcept {
+    const NearestHulls now = nearestPoints(pair, P_, near.n, near.seed);
     tick_.work += now.looks * workOf(pair);
     if (now.separation > near.s) {
         near.s = now.separation;
         near.n = near.n_next = now.n;
     }
     const double need = needOf(near.s, true);
-    const NearestHulls then = nearestPoints(pair, P_next_, near.n);
+    const NearestHulls then = nearestPoints(pair, P_next_, near.n, near.seed);
     tick_.work += then.looks * workOf(pair);
     if (then.meets || then.separation < need) return false;
     near.n_next = then.n;
     near.s_next = then.separation;
+    const double on_the_way = kOnTheWay * need + arc_ + kRounding;
+    if (swept >= on_the_way) return true;
     tick_.work += 3 * workOf(pair);
-    if (provesTurning(pair, {P_, near.n}, {P_next_, then.n}, kOnTheWay * need + arc_ + kRounding)) return true;
+    if (provesTurning(pair, {P_, near.n}, {P_next_, then.n}, on_the_way)) return true;
     const Vec3 carried = P_next_.R * (P_.R.transpose() * near.n);
-    if (provesTurning(pair, {P_, near.n}, {P_next_, carried}, kOnTheWay * need + arc_ + kRounding)) {
+    if (provesTurning(pair, {P_, near.n}, {P_next_, carried}, on_the_way)) {
         const double s = separationAlong(pair, P_next_, carried);
         if (s >= need) {
             near.n_next = carried;
@@ -227,11 +225,12 @@ bool SurfaceProxy::provesFaces(NearPair& near, const HullPair& pair) noexcept {
 bool SurfaceProxy::provesParts(const NearPair& near, const HullPair& pair, const Vec3& n_end, double need) noexcept {
     constexpr int kParts = 1 << kTurnSteps;
     PlaneAt from{P_, near.n};
+    CornerSeed seed = near.seed;
     for (int i = 1; i <= kParts; ++i) {
         PlaneAt to{P_next_, n_end};
         if (i < kParts) {
             to.X = Placement(poseOnWay(i / double(kParts)));
-            const NearestHulls there = nearestPoints(pair, to.X, from.n);
+            const NearestHulls there = nearestPoints(pair, to.X, from.n, seed);
             tick_.work += there.looks * workOf(pair);
             if (there.meets) return false;
             to.n = there.n;
@@ -260,24 +259,37 @@ Pose SurfaceProxy::poseOnWay(double share) const noexcept {
     return X;
 }
 
-/// A row that keeps two faces apart, of where they come to each other on the way.
+/// True if no point of the way between two poses comes nearer than `need`.
+bool SurfaceProxy::staysApart(const HullPair& pair, const PlaneAt& from, const PlaneAt& to, double need) noexcept {
+    tick_.work += 2 * workOf(pair);
+    if (separationAlong(pair, to.X, from.n) >= need || separationAlong(pair, from.X, to.n) >= need) return true;
+    if (provesTurning(pair, from, to, need)) return true;
+    CornerSeed seed;
+    const NearestHulls swept = nearestHulls(pair, from.X, to.X, from.n, need, need, seed);
+    tick_.work += swept.looks * workOf(pair);
+    return swept.separation >= need;
+}
+
+/// A row that keeps two faces apart, of where they come to each other first on the way.
 void SurfaceProxy::addRow(NearPair& near) noexcept {
-    if (!isFacePair(near.pair)) {
+    if (!near.faces) {
         least_share_ = 0.0;  // no room to split it
         return;
     }
     const HullPair pair = hulls(near.pair);
     Placement X = P_;
-    NearestHulls there = nearestPoints(pair, P_, near.n);
+    CornerSeed seed = near.seed;
+    NearestHulls there = nearestPoints(pair, P_, near.n, seed);
     const double need = needOf(near.s, true);
     double from = 0.0, to = 1.0;
     int looks = there.looks;
     for (int i = 0; i < kTouchSteps; ++i) {
         const double middle = 0.5 * (from + to);
         const Placement X_middle(poseOnWay(middle));
-        const NearestHulls now = nearestPoints(pair, X_middle, there.n);
+        const NearestHulls now = nearestPoints(pair, X_middle, there.n, seed);
         looks += now.looks;
-        if (!now.meets && now.separation >= need) {
+        if (!now.meets && now.separation >= need &&
+            staysApart(pair, {X, there.n}, {X_middle, now.n}, kOnTheWay * need + arc_ + kRounding)) {
             from = middle;
             there = now;
             X = X_middle;
@@ -321,15 +333,16 @@ void SurfaceProxy::accept() noexcept {
     phase_ = Phase::Idle;
     ahead_ = nearer_;
     for (std::size_t c = 0; c < NormalClass::kCount; ++c) usual_[c] = std::max(nearer_[c], kFading * usual_[c]);
+    setSleeps();
     overlaps_ = false;
+    tick_.work += static_cast<int>(near_count_ / 2);
     for (std::size_t i = 0; i < near_count_;) {
         NearPair& near = near_[i];
-        const HullPair pair = hulls(near.pair);
-        const bool faces = pair.of_held.isFace() && pair.of_obstacle.isFace();
         near.n = near.n_next;
         near.s = near.meets ? 0.0 : near.s_next;
-        if (near.meets || (faces && near.s < 1.2 * gap_)) {
-            const NearestHulls now = nearestPoints(pair, P_, near.n);
+        if (near.meets || (near.faces && near.s < 1.2 * gap_)) {
+            const HullPair pair = hulls(near.pair);
+            const NearestHulls now = nearestPoints(pair, P_, near.n, near.seed);
             tick_.work += now.looks * workOf(pair);
             if (now.separation > near.s) {
                 near.n = near.n_next = now.n;
@@ -337,7 +350,7 @@ void SurfaceProxy::accept() noexcept {
                 near.meets = false;
             }
         }
-        if (near.s >= sleepBeyond(NormalClass::of(near.n))) {
+        if (sleeps(near.n, near.s)) {
             const NearPair gone = near;
             near_[i] = near_[--near_count_];
             fallAsleep(gone.pair, gone.n, gone.s);

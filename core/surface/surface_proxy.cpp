@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kStill = 1e-8;                  // [m]: a motion below this is none
 constexpr double kGoodEnough = 2e-6;             // [m]: what a look leaves is of second order
+constexpr double kGoodWhenSpent = 2e-5;          // [m], more than that where nothing is left of the budget
 constexpr double kGoodShare = 0.03;              // of a tick's way, the same
 constexpr double kLeastLeft = 0.05;              // of a tick's way: for less no look is begun
 constexpr double kLeastTrust = 2e-5;             // [m]
@@ -23,10 +24,11 @@ constexpr double kStraight = 0.95;               // cosine: they face each other
 constexpr int kMostRefined = 8;                  // planes in a tick
 constexpr int kMostGhosts = 3;                   // rounds of a look that drop some
 constexpr double kTold = 1e-9;                   // [m]: welding and rounding, which the told gap leaves out
+constexpr std::size_t kLookedOver = 8;           // near pairs for a unit of work
 constexpr double kTouches = 1.2;                 // gaps: a row no farther away holds the pose
 constexpr double kUnlimited = 0.1;               // [m]: the least gap where nothing is near
 constexpr std::size_t kMostWoken = 2500;
-constexpr int kMostIdle = 3;  // ticks of a row that does not hold
+constexpr int kMostIdle = 3;  // ticks of a row that does not hold, and after rows held
 constexpr int kMostRounds = 4;
 constexpr int kMostShorter = 4;
 constexpr double kSameWay = 0.8;  // cosine of two looks' ways
@@ -52,7 +54,7 @@ SurfaceProxy::SurfaceProxy(const ClusterTree& held, const ClusterTree& obstacles
       settings_(settings),
       budget_(settings.budget),
       forest_(pairsFor(held, obstacles)),
-      near_(forest_.capacity()),
+      near_(forest_.capacity() / 2 + 1),  // leaves of trees that part in two
       rows_(kMostRows),
       manifold_(kMostRows),
       gap_(settings.gap),
@@ -76,6 +78,7 @@ void SurfaceProxy::place(const Pose& X_WG) noexcept {
     left_to_lead_ = 0.0;
     X_WH_last_.reset();
     gone_.setZero();
+    since_held_ = kMostIdle + 1;
     phase_ = Phase::Idle;
 }
 
@@ -197,10 +200,10 @@ void SurfaceProxy::adaptGap() noexcept {
         for (std::size_t k = 0; k < near_count_; ++k) {
             NearPair& near = near_[k];
             const auto faces = [&] { return near.s + row.s < room && near.n.dot(row.n) < kOpposite; };
-            if (!faces() || !isFacePair(near.pair)) continue;
+            if (!near.faces || !faces()) continue;
             // A plane that proves something need not be the nearest one.
             if (++refined > kMostRefined) return;
-            const NearestHulls now = nearestPoints(hulls(near.pair), P_, near.n);
+            const NearestHulls now = nearestPoints(hulls(near.pair), P_, near.n, near.seed);
             tick_.work += 5 * now.looks;
             if (now.separation > near.s) {
                 near.n = near.n_next = now.n;
@@ -268,6 +271,12 @@ motion::Motion SurfaceProxy::wayOut() const noexcept {
     return u;
 }
 
+/// What a look may leave to the next tick [m]: the more, the less of the budget is left.
+double SurfaceProxy::goodEnough() const noexcept {
+    const double spent = std::min(1.0, static_cast<double>(tick_.work) / static_cast<double>(budget_));
+    return std::max(kGoodEnough + spent * spent * kGoodWhenSpent, kGoodShare * way_in_tick_);
+}
+
 bool SurfaceProxy::isHeld() const noexcept {
     return std::any_of(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(row_count_),
                        [](const ContactRow& row) { return row.push > 0.0; });
@@ -292,7 +301,7 @@ bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
         wanted_ += (times - 1.0) * u_;
         solve();
     }
-    const double most = isHeld() ? most_held_ : most_in_tick_, left = most - way_in_tick_;
+    const double most = isHeld() || since_held_ <= kMostIdle ? most_held_ : most_in_tick_, left = most - way_in_tick_;
     if (left < kLeastLeft * most) return false;
     const double room = std::min(overlaps_ ? kFastest : trust_, left);
     limited_ = false;
@@ -305,7 +314,7 @@ bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
         solve();
         limit(room);
     }
-    if (tick_.looks > 0 && !limited_ && way_ < std::max(kGoodEnough, kGoodShare * way_in_tick_)) return false;
+    if (tick_.looks > 0 && !limited_ && way_ < goodEnough()) return false;
     most_way_ = std::min(room, 1.3 * way_ + 2e-6);
     measureNearer();
     wakes_ = 0;
@@ -399,24 +408,23 @@ bool SurfaceProxy::tryAgain(bool violated) noexcept {
     return true;
 }
 
-/// Rows that hold although their faces stay far from each other are planes beyond the faces' ends: they go. True if
-/// there were any.
+/// True if a row's faces are far from each other at a pose at which their planes are not: it is one beyond their ends.
+bool SurfaceProxy::isGhost(const ContactRow& row, const Placement& X) noexcept {
+    const HullPair pair{*held_, *obstacles_, (*held_)[row.held], (*obstacles_)[row.obstacle]};
+    const double far = 1.5 * std::max(row.gapAt(X), gap_) + kLeastGap;
+    const NearestHulls there = nearestHulls(pair, X, row.n, far, far);
+    tick_.work += 5 * there.looks;
+    return there.separation >= far;
+}
+
+/// Rows that hold although they are ghosts go. True if there were any.
 bool SurfaceProxy::dropsGhosts() noexcept {
     ++ghosts_;
     std::size_t kept = 0;
     const Placement& X = P_next_;
     for (std::size_t i = 0; i < row_count_; ++i) {
         const ContactRow& row = rows_[i];
-        bool ghost = false;
-        if (row.push > 0.0) {
-            const HullPair pair{*held_, *obstacles_, (*held_)[row.held], (*obstacles_)[row.obstacle]};
-            const double by_row = std::max(row.gapAt(X), gap_);
-            const double far = 1.5 * by_row + kLeastGap;
-            const NearestHulls there = nearestHulls(pair, X, row.n, far, far);
-            tick_.work += 5 * there.looks;
-            ghost = there.separation >= far;
-        }
-        if (!ghost) rows_[kept++] = row;
+        if (!(row.push > 0.0) || !isGhost(row, X)) rows_[kept++] = row;
     }
     const bool any = kept < row_count_;
     row_count_ = kept;
@@ -446,7 +454,8 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
         const Checked checked = check();
         if (checked == Checked::Spent) {
             tick_.suspended = true;
-        } else if (checked == Checked::Violated || (ghosts_ < kMostGhosts && dropsGhosts())) {
+        } else if (checked == Checked::Violated ||
+                   (ghosts_ < kMostGhosts && 2 * tick_.work < budget_ && dropsGhosts())) {
             if (tryAgain(checked == Checked::Violated)) continue;
             if (phase_ == Phase::Idle) {
                 tick_.stuck = true;
@@ -455,7 +464,7 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
             accept();
         } else {
             accept();
-            if (!limited_ && way_ < kGoodEnough) break;
+            if (!limited_ && way_ < goodEnough()) break;
         }
     }
     if (!tick_.suspended) {
@@ -469,25 +478,51 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
         if (isHeld()) refineLeast();
     }
     tell();
+    if (tick_.active > 0)
+        since_held_ = 0;
+    else if (!tick_.suspended)
+        since_held_ = std::min(since_held_ + 1, kMostIdle + 1);
     return tick_;
 }
 
-/// A plane that proved enough need not be the nearest one: those that would be told are.
+/// A plane that proved enough need not be the nearest one, nor need what sleeps be as near as it may: of those that
+/// would be told the distances are found out.
 void SurfaceProxy::refineLeast() noexcept {
-    for (int i = 0; i < kMostRefined; ++i) {
-        const auto end = near_.begin() + static_cast<std::ptrdiff_t>(near_count_);
-        const auto least =
-            std::min_element(near_.begin(), end, [](const NearPair& a, const NearPair& b) { return a.s < b.s; });
-        if (least == end || least->meets) return;
-        const NearestHulls now = nearestPoints(hulls(least->pair), P_, least->n);
+    double told = kSeen;
+    const auto refine = [&](NearPair& near) {
+        const NearestHulls now = nearestPoints(hulls(near.pair), P_, near.n, near.seed);
         tick_.work += 5 * now.looks;
-        if (!(now.separation > least->s + kTold)) return;
-        least->n = least->n_next = now.n;
-        least->s = now.separation;
+        if (now.separation > near.s) {
+            near.n = near.n_next = now.n;
+            near.s = now.separation;
+        }
+    };
+    const auto end = near_.begin() + static_cast<std::ptrdiff_t>(near_count_);
+    const auto least = std::min_element(near_.begin(), end, [](const NearPair& a, const NearPair& b) {
+        return (a.faces ? a.s : kUnlimited) < (b.faces ? b.s : kUnlimited);
+    });
+    if (least != end && least->faces && !least->meets) {
+        refine(*least);
+        told = std::min(told, least->s);
+    }
+    for (std::size_t c = 0; c < NormalClass::kCount; ++c)
+        if (forest_.sureOf(c) < told) forest_.wake(c, told, kMostWoken);
+    if (!settle()) return;
+    for (std::size_t i = 0; i < near_count_ && !spent();) {
+        NearPair& near = near_[i];
+        if (near.s + kTold < told && !near.meets) {
+            refine(near);
+            if (near.faces)
+                told = std::min(told, near.s);
+            else if (near.s < told && trySplit(i))
+                continue;
+        }
+        ++i;
     }
 }
 
 void SurfaceProxy::tell() noexcept {
+    tick_.work += static_cast<int>(near_count_ / kLookedOver);
     double least = kUnlimited;
     overlaps_ = false;
     for (std::size_t i = 0; i < near_count_; ++i) {
@@ -503,7 +538,7 @@ void SurfaceProxy::tell() noexcept {
     tick_.meets = overlaps_;
     tick_.rows = static_cast<int>(row_count_);
     for (std::size_t i = 0; i < row_count_; ++i)
-        tick_.active += rows_[i].push > 0.0 && rows_[i].gapAt(P_) <= kTouches * gap_ ? 1 : 0;
+        if (rows_[i].push > 0.0 && rows_[i].gapAt(P_) <= kTouches * gap_ && !isGhost(rows_[i], P_)) ++tick_.active;
 }
 
 double SurfaceProxy::handDepth(const Pose& X_WH) const noexcept {

@@ -17,7 +17,7 @@ namespace passung::surface {
 struct SurfaceSettings {
     double metric_radius = 0.0;  // ρ: makes a rotation comparable with a translation [m], > 0
     double gap = 1e-6;           // held between the parts where there is room for it [m]
-    int budget = 20000;          // units of work in a tick
+    int budget = 34000;          // units of work in a tick
 };
 
 /// What a tick did.
@@ -53,9 +53,9 @@ struct SurfaceTick {
 /// Bernstein coefficient  n0·a0 - h0,  ½(n0·a1 + n1·a0 - h0 - h1),  n1·a1 - h1,  less e.
 /// A cluster's hull is proven from one number: any x within r of c has  n · Δx ≥ n · Δc - |Dᵀ n| r,  D = R1 - R0.
 ///
-/// Held by rows the proxy goes no faster than kFastestHeld, or half as fast again as the hand: past an edge it
-/// slides through several ticks, and the force with it. Where rows turn with the pose, a look goes farther than they
-/// say (relaxation()).
+/// Held by rows, and for three ticks after that, the proxy goes no faster than kFastestHeld, or half as fast again as
+/// the hand: past an edge it slides through several ticks, and the force with it. Where rows turn with the pose, a look
+/// goes farther than they say (relaxation()).
 ///
 /// A start in overlap: where triangles cross, out along what faces them and along the hand, until none do. Then, and at
 /// each place, it is asked whether something lies wholly within the other part (enclosure.h): if so, the held part goes
@@ -101,8 +101,12 @@ private:
     struct NearPair {
         Vec3 n, n_next;    // plane now and after the look
         double s, s_next;  // separation by it [m]
+        Vec3 centre;       // and
+        double radius;     // of the held hull's ball, part frame [m]
         std::uint32_t pair;
         bool meets;  // triangles cross: no plane yet
+        bool faces;  // it cannot be split
+        CornerSeed seed;
     };
     struct PlaneAt {
         Placement X;
@@ -113,11 +117,11 @@ private:
 
     // surface_proof.cpp
     HullPair hulls(std::uint32_t pair) const noexcept;
-    bool isFacePair(std::uint32_t pair) const noexcept;
     bool spent() const noexcept { return tick_.work >= budget_; }
-    double sleepBeyond(std::size_t normals) const noexcept;
+    void setSleeps() noexcept;
     bool settle() noexcept;
     void sort(std::uint32_t at, double any) noexcept;
+    bool sleeps(const Vec3& n, double s) const noexcept { return s >= sleeps_[NormalClass::of(n)]; }
     void push(std::uint32_t pair, const Vec3& n, double s, bool meets) noexcept;
     void fallAsleep(std::uint32_t at, const Vec3& n, double s) noexcept;
     std::uint32_t splitPair(std::uint32_t at) noexcept;
@@ -125,9 +129,10 @@ private:
     double needOf(double s, bool faces) const noexcept;
     Checked check() noexcept;
     bool proves(NearPair& near) noexcept;
-    bool provesFaces(NearPair& near, const HullPair& pair) noexcept;
+    bool provesFaces(NearPair& near, const HullPair& pair, double swept) noexcept;
     bool provesParts(const NearPair& near, const HullPair& pair, const Vec3& n_end, double need) noexcept;
     bool provesTurning(const HullPair& pair, const PlaneAt& from, const PlaneAt& to, double need) const noexcept;
+    bool staysApart(const HullPair& pair, const PlaneAt& from, const PlaneAt& to, double need) noexcept;
     Pose poseOnWay(double share) const noexcept;
     void addRow(NearPair& near) noexcept;
     void accept() noexcept;
@@ -139,6 +144,7 @@ private:
     void adaptGap() noexcept;
     void solve() noexcept;
     double relaxation() const noexcept;
+    double goodEnough() const noexcept;
     bool isHeld() const noexcept;
     motion::Motion wayOut() const noexcept;
     bool knowsItsSide() noexcept;
@@ -149,6 +155,7 @@ private:
     bool wakeAll() noexcept;
     void bendRows() noexcept;
     bool tryAgain(bool violated) noexcept;
+    bool isGhost(const ContactRow& row, const Placement& X) noexcept;
     bool dropsGhosts() noexcept;
     void refineLeast() noexcept;
     void tell() noexcept;
@@ -170,6 +177,7 @@ private:
     PerClass settled_{};        // keys of all that are not near are no less [m]
     double gap_, least_ = 0.0;  // held; the least proven at X_ [m]
     double last_way_ = 0.0;     // in the last tick [m]
+    int since_held_ = 0;        // ticks
     bool overlaps_ = false;
     EnclosureSearch enclosure_;
     bool asks_ = true;           // whether something lies wholly within the other part
@@ -193,6 +201,7 @@ private:
     PerClass nearer_{};         // by the look
     PerClass ahead_{};          // by what may come of it, and in the next one
     PerClass usual_{};          // the most of late: who may be due soon stays awake
+    PerClass sleeps_{};         // pairs that are set apart by that may sleep
     double most_way_ = 0.0, way_ = 0.0, arc_ = 0.0, ease_ = 0.0, least_share_ = 1.0;
     std::size_t at_ = 0, wakes_ = 0;
     bool front_only_ = false, violated_ = false, limited_ = false;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 
@@ -97,15 +98,7 @@ Followed follow(const test::SurfaceCase& scene) {
     return seen;
 }
 
-/// Ticks of a case whose work may go on in the next one: what was counted when looks learnt to go farther where rows
-/// turn, and a quarter more. The mark is two.
-int mostSuspended(const test::SurfaceCase& scene) {
-    if (scene.name == "ring in ring") return 43;
-    if (scene.name == "scan on scan 10 mm") return 10;
-    if (scene.name == "scan on scan 100 mm") return 27;
-    if (scene.name == "gear in gear") return 13;
-    return 5;
-}
+constexpr int kMostSuspended = 2;  // ticks of a case whose work may go on in the next one: 0.1 %
 
 class SurfaceOf : public testing::TestWithParam<test::SurfaceCase> {};
 
@@ -121,11 +114,11 @@ TEST_P(SurfaceOf, TrianglesNeverMeetAndTheGapToldIsProven) {
     EXPECT_EQ(seen.between, 0);
     EXPECT_EQ(seen.meets, 0);
     EXPECT_EQ(seen.too_high, 0);
-    // Wanted is none: on bumpy meshes one tick in about fifty tells a gap that is proven, but too low.
-    EXPECT_LE(20 * seen.loose, seen.measured) << seen.loose;
+    EXPECT_EQ(seen.loose, 0);
     EXPECT_GT(seen.measured, 0);
     EXPECT_EQ(seen.too_fast, 0);
-    EXPECT_LE(seen.suspended, mostSuspended(GetParam()));
+    EXPECT_LE(seen.suspended, kMostSuspended);
+    EXPECT_EQ(seen.stuck, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SurfaceOf, testing::ValuesIn(test::surfaceCases()), [](const auto& made) {
@@ -134,6 +127,20 @@ INSTANTIATE_TEST_SUITE_P(All, SurfaceOf, testing::ValuesIn(test::surfaceCases())
         if (std::isalnum(static_cast<unsigned char>(c))) name += c;
     return name;
 });
+
+TEST(SurfaceProxy, GoesOnWhereFacesOnlyPassEachOther) {
+    // Truth: invariant: a hand that moves is followed. On these paths faces that were about to slip past an edge kept
+    // the proxy where it was for 30 to 255 ticks, although no way led through them.
+    for (const test::SurfaceCase& scene : {test::ringInRing(605), test::scanOnScan(.03, 60, 510)}) {
+        const ClusterTree held(scene.held), obstacle(scene.obstacle);
+        SurfaceProxy proxy(held, obstacle, {.metric_radius = std::sqrt(1.0 / 2000.0)});
+        proxy.place(scene.hand(0.0));
+        proxy.prepare();
+        int stuck = 0;
+        for (int tick = 0; tick < 1200; ++tick) stuck += proxy.advance(scene.hand(1e-3 * tick)).stuck;
+        EXPECT_EQ(stuck, 0) << scene.name;
+    }
+}
 
 TEST(SurfaceProxy, AllocatesNothingAndIsTheSameEveryTime) {
     // Truth: invariant.
