@@ -19,6 +19,7 @@ constexpr double kFading = 0.9;        // of what looks usually bring nearer, fr
 constexpr double kMergeBeyond = 5e-5;  // [m]: nearer pairs stay split
 constexpr double kMergeShare = 0.25;   // of its children's separation, which a pair needs to take their place
 constexpr int kMostAdded = 8;          // rows in a round
+constexpr int kFetched = 4;            // units of work: a pair that nothing was read of lately
 constexpr int kTouchSteps = 3;         // halvings of a way on which two faces come to each other
 constexpr int kTurnSteps = 2;          // halvings of a way whose turning plane is to be proven
 
@@ -63,7 +64,7 @@ void SurfaceProxy::sort(std::uint32_t at, double any) noexcept {
     const HullPair pair = hulls(at);
     const Vec3 between = P_ * pair.of_held.centre - pair.of_obstacle.centre;
     const double apart = between.norm();
-    ++tick_.work;
+    tick_.work += kFetched;
     const double by_balls = apart - pair.of_held.radius - pair.of_obstacle.radius;
     if (by_balls >= any) return fallAsleep(at, between / apart, by_balls);
     const Vec3 last = forest_[at].n;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -17,7 +18,7 @@ namespace passung::surface {
 struct SurfaceSettings {
     double metric_radius = 0.0;  // ρ: makes a rotation comparable with a translation [m], > 0
     double gap = 1e-6;           // held between the parts where there is room for it [m]
-    int budget = 34000;          // units of work in a tick
+    int budget = 38000;          // units of work in a tick
 };
 
 /// What a tick did.
@@ -117,7 +118,8 @@ private:
 
     // surface_proof.cpp
     HullPair hulls(std::uint32_t pair) const noexcept;
-    bool spent() const noexcept { return tick_.work >= budget_; }
+    /// True if a look that is accepted now takes what is left.
+    bool spent() const noexcept { return tick_.work >= budget_ - std::min(static_cast<int>(near_count_), budget_ / 4); }
     void setSleeps() noexcept;
     bool settle() noexcept;
     void sort(std::uint32_t at, double any) noexcept;

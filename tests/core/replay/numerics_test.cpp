@@ -51,7 +51,7 @@ constexpr std::uint64_t kEveryEffect = 0xf95259786173db2bu;
 constexpr std::uint64_t kClosedForm = 0x9a6ccf5c5185c6cfu;
 
 /// On surfaces, without the low-pass that they do not have.
-constexpr std::uint64_t kSurface = 0xe95cfb51f021472du;
+constexpr std::uint64_t kSurface = 0x819a7aeb2de9f838u;
 
 constexpr const char* kParts = R"(
 [[part]]
