@@ -28,7 +28,7 @@ void appendLine(std::string& text, const Fields& fields, Text text_of) {
 
 }  // namespace
 
-Levels::Levels(std::initializer_list<std::string_view> texts) : names(texts.begin(), texts.end()) {}
+ColumnLevels::ColumnLevels(std::initializer_list<std::string_view> texts) : names(texts.begin(), texts.end()) {}
 
 Column describe(std::string_view name, std::string_view label, std::string_view type, const ColumnDetails& details) {
     return {std::string(name),   std::string(label),           std::string(details.unit),

@@ -25,10 +25,10 @@ struct Column {
 };
 
 /// The values that a column takes. Made from texts outside of the lists of columns, which compile at length otherwise.
-struct Levels {
-    Levels() = default;
-    Levels(std::initializer_list<std::string_view> texts);
-    Levels(std::vector<std::string> texts) : names(std::move(texts)) {}
+struct ColumnLevels {
+    ColumnLevels() = default;
+    ColumnLevels(std::initializer_list<std::string_view> texts);
+    ColumnLevels(std::vector<std::string> texts) : names(std::move(texts)) {}
 
     std::vector<std::string> names;
 };
@@ -36,7 +36,7 @@ struct Levels {
 /// What some columns have; meanings as in Column.
 struct ColumnDetails {
     std::string_view unit = {};
-    Levels levels = {};
+    ColumnLevels levels = {};
     std::string_view formula = {};
     std::int64_t formula_version = 1;
 };
