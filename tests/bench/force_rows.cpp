@@ -185,7 +185,8 @@ Row rowOf(const char* method, const std::string& settings, bool ours, std::size_
     return {.group = kForceGroup, .method = method, .settings = settings, .ours = ours, .samples = samples};
 }
 
-/// A god object and a penalty on the device path of `records`, as the hard cases run and judge a path.
+/// A god object and a penalty on the device path of `records`, as the hard cases run and judge a path; beside a god
+/// object on closed forms at the ticks alone.
 Result<Row> overlapRow(const std::string& settings, const scene::SceneSpec& god_object,
                        const scene::SceneSpec& by_penalty, const std::vector<TickRecord>& records) {
     const hard::Drive drive = [&](std::int64_t tick, const tick::TickOutput*) {
@@ -194,7 +195,8 @@ Result<Row> overlapRow(const std::string& settings, const scene::SceneSpec& god_
     const auto deepest = [&](const scene::SceneSpec& scene) -> Result<double> {
         const auto run = hard::runScene(scene, drive, static_cast<std::int64_t>(records.size()));
         if (!run) return run.errors();
-        return kUm * hard::deepestOverlap(*run);
+        return kUm * (god_object.contact.geometry == scene::Geometry::Field ? hard::deepestOverlap(*run)
+                                                                            : hard::deepestShown(*run));
     };
     const auto ours = deepest(god_object), penalty = deepest(by_penalty);
     if (!ours) return ours.errors();

@@ -51,6 +51,13 @@ double deepestOverlap(const Run& run, double spacing) {
     return deepest;
 }
 
+double deepestShown(const Run& run) {
+    DenseDistance distance = denseDistance(run);
+    double deepest = 0.0;
+    for (const Tick& tick : run.ticks) deepest = -distance.least(tick.proxy, -deepest);
+    return deepest;
+}
+
 namespace {
 
 /// Every length shorter by 2 × `by`, so that the surface lies `by` deeper on every side of a box, cylinder or ball.

@@ -19,6 +19,9 @@ DenseDistance denseDistance(const Run& run, double spacing = 1e-3);
 /// Deepest overlap of the proxy with the obstacles, at all ticks and between them, where the methods do not look [m].
 double deepestOverlap(const Run& run, double spacing = 1e-3);
 
+/// The same at the ticks alone: closed forms go from one to the next by poses of their own.
+double deepestShown(const Run& run);
+
 /// Poses (at ticks and between them) at which FCL finds the thin obstacle in the held part shrunk by the field's
 /// tolerance on every side.
 double crossings(const Run& run);
