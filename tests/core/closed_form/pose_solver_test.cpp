@@ -178,7 +178,7 @@ TEST(PegInBore, ATiltedPegSlidesWithoutACatch) {
 
 TEST(PegInBore, OneThatWandersAboutItsMouthConvergesAsNewtonsMethodDoes) {
     // Truth: theory: near a minimum each look squares the error, so that few are needed wherever the hand does not slip
-    // past an edge, however little the energy bends there. (With all of B raised to be positive 227 ticks took more.)
+    // past an edge, however little the energy bends there. (With all of B raised to be positive 148 ticks took more.)
     PegInBore scene(10e-6);
     ConstrainedPose found{.X_WG = {Quat::Identity(), {0, 0, 0.002}}};
     const auto wave = [](double rate, double t, double phase) {
