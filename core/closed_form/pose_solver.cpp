@@ -72,7 +72,10 @@ void PoseSolver::add(const Row& row) noexcept {
 void PoseSolver::find(const Pose& X) noexcept {
     if (X_found_ && X_found_->p == X.p && X_found_->q.coeffs() == X.q.coeffs()) {
         count_ = found_;
-        for (std::size_t i = 0; i < count_; ++i) rows_[i].from.push = 0.0;
+        for (std::size_t i = 0; i < count_; ++i) {
+            rows_[i].from.push = 0.0;
+            rows_[i].stiff = false;
+        }
         return;
     }
     X_found_ = X;
