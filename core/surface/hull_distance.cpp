@@ -212,7 +212,7 @@ PASSUNG_INLINE NearestHulls iterateIn(const HullPair& pair, const Placement& X0,
 
 PASSUNG_V3 NearestHulls iterateV3(const HullPair& pair, const Placement& X0, const Placement* X1, const Vec3& from,
                                   const Aim& aim) noexcept {
-    const NearestHulls result = iterateIn(pair, X0, X1, from, aim);
+    NearestHulls result = iterateIn(pair, X0, X1, from, aim);
     PASSUNG_CLEAR_UPPER();
     return result;
 }

@@ -56,7 +56,7 @@ struct BoltInNut {
     }
 
     ConstrainedPose follow(const Pose& hand) {
-        const ConstrainedPose found = solver.solve(ofHeld(X), ofHeld(hand), memory, kThreadLooks);
+        ConstrainedPose found = solver.solve(ofHeld(X), ofHeld(hand), memory, kThreadLooks);
         X = ofHeld(found.X_WG);
         return found;
     }
@@ -307,6 +307,7 @@ TEST(BoltInNut, AllocatesNothing) {
     scene.X = scene.engaged(start);
     const Hand hand = hands(3)[5];
     std::vector<Pose> poses;
+    poses.reserve(300);
     for (int tick = 0; tick < 300; ++tick) poses.push_back(hand.at(scene, start, 1e-3 * tick));
     const support::RtGuard guard;
     for (const Pose& pose : poses) scene.follow(pose);
