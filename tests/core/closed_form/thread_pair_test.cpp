@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <numbers>
 #include <string>
@@ -204,9 +205,10 @@ TEST(BoltInNut, PushedAsideRestsAtItsPlay) {
 class ThreadPaths : public testing::TestWithParam<bool> {};
 
 TEST_P(ThreadPaths, OverlapNowhereCatchNowhereAndHoldTheLeastEnergy) {
-    // Truth: dense points of both surfaces against the other's profile (thread_reference.h), at every tenth tick, on
-    // its way and between; what dense places of the crests' edges can push holds what is felt. No step beyond the
-    // hand's.
+    // Truth: dense points of both surfaces against the other's profile (thread_reference.h), at every twentieth tick
+    // (PASSUNG_LONG=1: every fourth), on its way and between; what dense places of the crests' edges can push holds
+    // what is felt. No step beyond the hand's.
+    const int every = std::getenv("PASSUNG_LONG") != nullptr ? 4 : 20;
     std::vector<double> all;
     for (std::size_t i = 0; i < kSizes.size(); ++i) {
         for (const double share : {1e-3, 4e-3, 12e-3}) {  // of the diameter: 8, 32, 96 µm of an M8
@@ -235,7 +237,7 @@ TEST_P(ThreadPaths, OverlapNowhereCatchNowhereAndHoldTheLeastEnergy) {
                     ASSERT_LE(found.overlap, kOverlap) << tick;
                     ASSERT_FALSE(found.full) << tick;
                     late += found.converged ? 0 : 1;
-                    if (tick % 10 == 0) deepest = std::max(deepest, scene.overlapOnWay(truth));
+                    if (tick % every == 0) deepest = std::max(deepest, scene.overlapOnWay(truth));
                     if (mouth) continue;
                     const Vec3 force = kStiffness * found.pull.head<3>();
                     const double went = (scene.ofHeld(X_WH).p - scene.ofHeld(X_before).p).norm();
