@@ -22,6 +22,7 @@ struct DeviceDescription {
     std::string name;   // preset or model, e.g. "sigma7"
     std::string label;  // for people, e.g. "Force Dimension sigma.7 (simulated)"
     bool simulated = true;
+    bool stands_for_preset = false;  // where a condition names a preset this device serves, as a mouse does
     int sensed_degrees = 6;
     int actuated_degrees = 6;           // 3: force only, torque is never rendered
     double max_force_N = 12.0;          // > 0

@@ -26,6 +26,7 @@ simulated::HandCoupling handFor(const simulated::DeviceParams& preset) {
 DeviceDescription mouseDescription(const simulated::DeviceParams& preset) {
     DeviceDescription description = simulated::describe(preset);
     description.name = "mouse";
+    description.stands_for_preset = true;
     description.label += ", moved by mouse and keyboard";
     return description;
 }

@@ -235,7 +235,7 @@ bool LoopApparatus::measureOverlaps(std::span<const TickRecord> trial, std::span
 }
 
 /// Of the trial's time; of the attempt's where it did not start or the program does not see it start.
-session::Presentation LoopApparatus::presentation() const {
+std::optional<session::Presentation> LoopApparatus::presentation() const {
     const std::int64_t zero_ns = started_ns_ == 0 ? steadyNanoseconds() : started_ns_;
     return performer_->presented(zero_ns, zero_ns + engaged_at_.value_or(0) * kTickNanoseconds,
                                  zero_ns + periods_ * kTickNanoseconds);

@@ -62,7 +62,7 @@ private:
             std::span<loop::ScreenRing* const> screens, bool timed);
     };
 
-    session::Presentation presentation() const;
+    std::optional<session::Presentation> presentation() const;
     Result<BuiltScenes> build(const std::vector<session::RenderedScene>& scenes);
     HeldDevice makeDevice(const simulated::DeviceParams& preset, const plan::Condition& condition, std::uint64_t seed,
                           std::int64_t trials_before) const;

@@ -63,9 +63,9 @@ public:
         }
         const auto scenes = run::buildScenes(session::renderedScenes(*condition, attempt.seed), parts_);
         if (!scenes) return scenes.errors();
-        const auto difference = measureDifference(attempt, *condition, *records);
-        if (!difference) return difference.errors();
-        return tell(attempt, replay::replay(scenes->turns, *records), *difference);
+        const auto again = compareMeasures(attempt, *condition, *records);
+        if (!again) return again.errors();
+        return tell(attempt, replay::replay(scenes->turns, *records), *again);
     }
 
 private:
@@ -74,40 +74,55 @@ private:
                            attempt.session_ordinal, attempt.trial_index + 1, attempt.presented_condition);
     }
 
-    /// The first measure, or the outcome, that the recorded ticks do not give again; empty if they give all. Bits
-    /// count: the formulas are exact functions of what is stored.
-    Result<std::string> measureDifference(const store::AttemptRow& attempt, const plan::Condition& condition,
+    /// What the recorded ticks give again of what was measured.
+    struct MeasuresAgain {
+        std::string difference;    // the first measure, or the outcome, that they do not give; empty if they give all
+        std::string not_recorded;  // a measure that was not taken then
+    };
+
+    /// Bits count: the formulas are exact functions of what is stored.
+    Result<MeasuresAgain> compareMeasures(const store::AttemptRow& attempt, const plan::Condition& condition,
                                           const std::vector<TickRecord>& records) const {
         const auto outcome = measures::outcomeNamed(attempt.outcome);
-        if (!outcome || !attempt.end_ns) return std::string();  // it did not end: nothing was measured
+        if (!outcome || !attempt.end_ns) return MeasuresAgain{};  // it did not end: nothing was measured
         session::StoredEnd end{*outcome, (*attempt.end_ns - attempt.start_ns) / kTickNanoseconds, {}, attempt.seed};
         end.overlaps = attempt.overlaps;
         if (attempt.trial_ns) end.start_time = (*attempt.trial_ns - attempt.start_ns) / kTickNanoseconds;
         const auto again = session::judgeAgain(condition, records, end);
         if (!again) return again.errors();
         if (again->outcome != *outcome)
-            return fmt::format("outcome: stored {}, from the ticks {}", attempt.outcome,
-                               measures::outcomeName(again->outcome));
+            return MeasuresAgain{fmt::format("outcome: stored {}, from the ticks {}", attempt.outcome,
+                                             measures::outcomeName(again->outcome)),
+                                 {}};
         const auto text = [](const std::optional<double>& value) {
             return value ? fmt::format("{}", *value) : std::string("none");
         };
+        MeasuresAgain found_again;
         for (const measures::Value& value : again->measures) {
             const auto found = attempt.measures.find(value.name);
+            const auto& undefined = attempt.undefined_measures;
+            if (found == attempt.measures.end() && std::ranges::find(undefined, value.name) == undefined.end()) {
+                found_again.not_recorded = value.name;
+                continue;
+            }
             const auto stored = found == attempt.measures.end() ? std::nullopt : std::optional(found->second);
             const bool same = stored && value.value
                                   ? std::bit_cast<std::uint64_t>(*stored) == std::bit_cast<std::uint64_t>(*value.value)
                                   : !stored && !value.value;
-            if (!same)
-                return fmt::format("{}: stored {}, from the ticks {}", value.name, text(stored), text(value.value));
+            if (!same) {
+                found_again.difference =
+                    fmt::format("{}: stored {}, from the ticks {}", value.name, text(stored), text(value.value));
+                return found_again;
+            }
         }
         if (const auto found = detections_.find(attempt.attempt_id);
             again->detections != (found == detections_.end() ? std::vector<measures::Detection>{} : found->second))
-            return std::string("the responses to the secondary task");
-        return std::string();
+            found_again.difference = "the responses to the secondary task";
+        return found_again;
     }
 
     static Verdict tell(const store::AttemptRow& attempt, const replay::ReplayReport& report,
-                        const std::string& measure_difference) {
+                        const MeasuresAgain& again) {
         const std::string name = nameOf(attempt);
         if (report.first_difference) {
             const auto& d = *report.first_difference;
@@ -115,8 +130,8 @@ private:
                        d.replayed);
             return Verdict::Differs;
         }
-        if (!measure_difference.empty()) {
-            fmt::print("{}: DIFFERS in {}\n", name, measure_difference);
+        if (!again.difference.empty()) {
+            fmt::print("{}: DIFFERS in {}\n", name, again.difference);
             return Verdict::Differs;
         }
         const auto& stored = attempt.contact_energy;  // none in older databases
@@ -139,6 +154,13 @@ private:
         if (attempt.state_hash != hash) {
             fmt::print("{}: DIFFERS in the state hash: recorded {}, replayed {}\n", name, attempt.state_hash, hash);
             return Verdict::Differs;
+        }
+        if (!again.not_recorded.empty()) {
+            fmt::print(
+                "{}: NOT PROVEN: {} ticks, every recorded bit and every recorded measure the same, but {} was not "
+                "recorded\n",
+                name, report.ticks, again.not_recorded);
+            return Verdict::NotProven;
         }
         fmt::print("{}: {} ticks, every recorded bit and every measure the same, state hash {}\n", name, report.ticks,
                    hash);

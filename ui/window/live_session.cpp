@@ -264,7 +264,8 @@ void LiveSession::takePictures() {
         pictures_.insert(pictures_.end(), pictures.begin(), pictures.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-session::Presentation LiveSession::presented(std::int64_t zero_ns, std::int64_t from_ns, std::int64_t to_ns) {
+std::optional<session::Presentation> LiveSession::presented(std::int64_t zero_ns, std::int64_t from_ns,
+                                                            std::int64_t to_ns) {
     session::Presentation shown = shown_;
     takePictures();
     const run::PictureTimes times = run::timesBetween(pictures_, zero_ns, from_ns, to_ns);

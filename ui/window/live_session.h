@@ -71,7 +71,8 @@ private:
     DeviceDescription describe(const simulated::DeviceParams& preset) const override;
     std::span<loop::ScreenRing* const> screens() override { return screens_; }
     void awaitPicture() override;
-    session::Presentation presented(std::int64_t zero_ns, std::int64_t from_ns, std::int64_t to_ns) override;
+    std::optional<session::Presentation> presented(std::int64_t zero_ns, std::int64_t from_ns,
+                                                   std::int64_t to_ns) override;
     session::QuestionnaireSource* answers() override { return &interview_; }
     session::InstructionReader* reader() override { return &interview_; }
     void begins(session::Apparatus& apparatus, const session::SessionSetup& setup) override;

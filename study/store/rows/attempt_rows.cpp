@@ -25,8 +25,9 @@ Selection<AttemptRow> attemptColumns(const Database& database) {
              &Row::group},
             {"s.ordinal", &Row::session_ordinal},
             {"s.station", &Row::station},
-            // A mouse stands for the device that the condition names.
-            {"CASE json_extract(g.device_json, '$.name') WHEN 'mouse' THEN 'mouse' ELSE "
+            // A mouse stands for the device that the condition names; once only its name told that.
+            {"CASE WHEN coalesce(json_extract(g.device_json, '$.stands_for_preset'), "
+             "json_extract(g.device_json, '$.name')='mouse') THEN json_extract(g.device_json, '$.name') ELSE "
              "coalesce(json_extract(a.params_json, '$.device'), json_extract(g.device_json, '$.name')) END",
              &Row::device},
             {"t.block_index", &Row::block_index},
@@ -96,10 +97,14 @@ const Selection<measures::CueSettings>& cueColumns() {
 
 /// Adds what other tables hold of the attempt.
 void readParts(const Database& database, AttemptRow& attempt) {
-    Statement values =
-        database.prepare("SELECT measure, value_num FROM attempt_measure WHERE attempt_id=? AND value_num IS NOT NULL");
+    Statement values = database.prepare("SELECT measure, value_num FROM attempt_measure WHERE attempt_id=?");
     values.bind(attempt.attempt_id);
-    while (values.step()) attempt.measures.emplace(values.text(0), values.real(1));
+    while (values.step()) {
+        if (const auto value = values.optionalReal(1))
+            attempt.measures.emplace(values.text(0), *value);
+        else
+            attempt.undefined_measures.push_back(values.text(0));
+    }
     attempt.overlaps = readExactOverlaps(database, attempt.attempt_id);
     attempt.contact_energy = readContactEnergy(database, attempt.attempt_id);
     attempt.delivered = readDelivery(database, attempt.attempt_id);

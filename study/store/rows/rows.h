@@ -255,6 +255,7 @@ struct AttemptRow {
     std::optional<std::int64_t> start_tick;              // the same among the attempt's ticks; filled in by exports
     std::optional<std::int64_t> end_tick;                // the same of its end
     std::map<std::string, double> measures;              // only those that are defined for this attempt
+    std::vector<std::string> undefined_measures;         // recorded, without a value
     std::vector<measures::TickOverlap> overlaps;         // of judged ticks; none before schema revision 17
     std::vector<session::ContactEnergy> contact_energy;  // none of attempts from before schema revision 6
     std::optional<session::Presentation> presentation;   // none: no window showed it

@@ -23,6 +23,7 @@ std::string mechanismJson(const DeviceMechanism& m) {
 std::string deviceJson(const DeviceDescription& device) {
     JsonObject json;
     json.text("name", device.name).text("label", device.label).boolean("simulated", device.simulated);
+    json.boolean("stands_for_preset", device.stands_for_preset);
     json.integer("sensed_degrees", device.sensed_degrees).integer("actuated_degrees", device.actuated_degrees);
     json.number("max_force_N", device.max_force_N).number("max_torque_Nm", device.max_torque_Nm);
     json.number("max_force_rate_N_per_s", device.max_force_rate_N_per_s);

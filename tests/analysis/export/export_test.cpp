@@ -166,34 +166,43 @@ TEST_F(Export, EventsKeepHardTexts) {
 }
 
 TEST(ExportedSession, TellsEveryDeviceThatItRanOn) {
-    // Truth: closed form: begun on a simulated sigma7, cut off, and resumed with a mouse.
-    const fake::TempFolder folder;
-    {
-        auto store = fake::openStore(folder / "s.db");
-        auto writer = fake::beginSession(*store, "S001", 2);
-        require(fake::writeAttempt(*writer, 0, 40));
-        require(writer->finishSession(false, 40 * kTickNanoseconds));
-        writer.reset();
-        store::SessionStart start;
-        start.protocol_sha256 = require(store->importProtocol(fake::makePlan()));
-        require(store->assignSlot(start.protocol_sha256, "S001"));
-        start.participant = "S001";
-        start.seed = fake::makePlan().seed;
-        start.session_id = store::sessionId("fake", "S001", 1, start.seed);
-        start.device.name = "mouse";
-        start.device.simulated = false;
-        writer = require(store->resumeSession(start, 40 * kTickNanoseconds));
-        require(fake::writeAttempt(*writer, 1, 40));
-        require(writer->finishSession(true, 60'000'000'000));
+    // Truth: closed form: begun on a simulated sigma7, cut off, and resumed with a device that stands for the
+    // preset which the condition names; of a mouse older files tell that by its name alone.
+    for (const std::string device : {"mouse", "player"}) {
+        const fake::TempFolder folder;
+        {
+            auto store = fake::openStore(folder / "s.db");
+            auto writer = fake::beginSession(*store, "S001", 2);
+            require(fake::writeAttempt(*writer, 0, 40));
+            require(writer->finishSession(false, 40 * kTickNanoseconds));
+            writer.reset();
+            store::SessionStart start;
+            start.protocol_sha256 = require(store->importProtocol(fake::makePlan()));
+            require(store->assignSlot(start.protocol_sha256, "S001"));
+            start.participant = "S001";
+            start.seed = fake::makePlan().seed;
+            start.session_id = store::sessionId("fake", "S001", 1, start.seed);
+            start.device.name = device;
+            start.device.stands_for_preset = true;
+            start.device.simulated = false;
+            writer = require(store->resumeSession(start, 40 * kTickNanoseconds));
+            require(fake::writeAttempt(*writer, 1, 40));
+            require(writer->finishSession(true, 60'000'000'000));
+            const store::Database database(folder / "s.db", store::OpenMode::ReadWrite);
+            database.execute("UPDATE attempt SET params_json=json_set(params_json, '$.device', 'omega7')");
+            if (device == "mouse")
+                database.execute("UPDATE segment SET device_json=json_remove(device_json, '$.stands_for_preset')");
+        }
+        exportTo(folder / "s.db", folder / "out");
+        const fake::CsvFile sessions = fake::readCsv(readFile(folder / "out/sessions.csv"));
+        EXPECT_EQ(sessions.at(0, "n_segments"), "2");
+        EXPECT_EQ(sessions.at(0, "device"), "omega7;" + device);
+        EXPECT_EQ(sessions.at(0, "segment_devices"), "sigma7;" + device);
+        EXPECT_EQ(sessions.at(0, "device_simulated"), "0");
+        const fake::CsvFile trials = fake::readCsv(readFile(folder / "out/trials.csv"));
+        EXPECT_EQ(trials.at(0, "device"), "omega7");
+        EXPECT_EQ(trials.at(1, "device"), device) << "as the trials say";
     }
-    exportTo(folder / "s.db", folder / "out");
-    const fake::CsvFile sessions = fake::readCsv(readFile(folder / "out/sessions.csv"));
-    EXPECT_EQ(sessions.at(0, "n_segments"), "2");
-    EXPECT_EQ(sessions.at(0, "device"), "sigma7;mouse");
-    EXPECT_EQ(sessions.at(0, "segment_devices"), "sigma7;mouse");
-    EXPECT_EQ(sessions.at(0, "device_simulated"), "0");
-    const fake::CsvFile trials = fake::readCsv(readFile(folder / "out/trials.csv"));
-    EXPECT_EQ(trials.at(1, "device"), "mouse") << "as the trials say";
 }
 
 TEST_F(Export, TheCodebookSaysWhatSessionTimeLeavesOut) {

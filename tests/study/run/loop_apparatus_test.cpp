@@ -12,9 +12,9 @@
 
 #include "devices/simulated/simulated_device.h"
 #include "study/protocol/protocol_reader.h"
+#include "study/run/person/performer.h"
 #include "study/run/person/simulated_hand.h"
 #include "study/run/visible_task.h"
-#include "tests/study/run/stub_performer.h"
 #include "tests/ui/cli/small_study.h"
 
 namespace passung::run {
@@ -80,15 +80,12 @@ TEST(LoopApparatus, NamesTheStagesThatTheConditionCallsForAndNoOthers) {
 }
 
 /// Somebody of this kind takes part in windows; the device is held by a simulated hand all the same.
-class Somebody final : public test::StubPerformer {
+class Somebody final : public run::Performer {
 public:
     Somebody(plan::ParticipantKind kind, std::string sound, std::optional<std::int64_t> coloured)
         : kind_(kind), sound_(std::move(sound)), coloured_(coloured) {}
     plan::ParticipantKind kind() const override { return kind_; }
-    DeviceDescription describe(const simulated::DeviceParams& preset) const override {
-        return simulated::describe(preset);
-    }
-    session::Presentation presented(std::int64_t, std::int64_t, std::int64_t) override {
+    std::optional<session::Presentation> presented(std::int64_t, std::int64_t, std::int64_t) override {
         session::Presentation given;
         given.sound = sound_;
         given.cue_frames = coloured_;
@@ -280,8 +277,9 @@ private:
     std::atomic<bool> pushed_{false};
 };
 
-class DeviceOfHis : public test::StubPerformer {
+class DeviceOfHis : public run::Performer {
 public:
+    plan::ParticipantKind kind() const override { return plan::ParticipantKind::Pilot; }
     std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams& preset,
                                                const plan::Condition& c) override {
         const scene::Registration& r = c.scene.registration;
@@ -290,9 +288,6 @@ public:
         auto watched = std::make_unique<WatchedDevice>(std::move(hand), forces, motors);
         device_ = watched.get();
         return watched;
-    }
-    DeviceDescription describe(const simulated::DeviceParams& preset) const override {
-        return simulated::describe(preset);
     }
     bool motors = true;
     std::vector<double> forces;

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "study/protocol/protocol_reader.h"
+#include "study/run/person/performer.h"
 #include "study/store/schema/sqlite.h"
-#include "tests/study/run/stub_performer.h"
 #include "tests/support/temp_folder.h"
 #include "tests/ui/cli/small_study.h"
 
@@ -18,12 +18,16 @@ plan::StudyPlan planOf(const std::string& text) {
     return *std::move(plan);
 }
 
+class Pilot final : public Performer {
+    plan::ParticipantKind kind() const override { return plan::ParticipantKind::Pilot; }
+};
+
 TEST(RunStudy, WhoIsNotAdmittedIsNotEnrolled) {
     // Truth: invariant: a refusal leaves no row of the participant, however often it is tried.
     const auto plan =
         planOf(test::smallStudy() + "\n[[consent]]\nclause = \"data_use\"\ntext = { en = \"May we?\" }\n");
     const test::TempFolder folder;
-    test::StubPerformer visitor;  // nobody has asked for their consent
+    Pilot visitor;  // nobody has asked for their consent
     RunOptions options;
     options.database = folder / "study.db";
     options.backup = false;

@@ -39,6 +39,11 @@ TEST_F(ReplayMeasures, ComeOutOfTheRecordedTicksAgain) {
     EXPECT_NE(changed.out.find("DIFFERS in trial_time_s: stored "), std::string::npos) << changed.out;
 
     change("DELETE FROM attempt_measure WHERE attempt_id=3 AND measure='trial_time_s'");
+    const Ended lacking = replay("3");  // a program that had no such measure leaves the same
+    EXPECT_EQ(lacking.exit_code, 1);
+    EXPECT_NE(lacking.out.find("NOT PROVEN: "), std::string::npos) << lacking.out;
+    EXPECT_NE(lacking.out.find("but trial_time_s was not recorded"), std::string::npos) << lacking.out;
+    change("INSERT INTO attempt_measure(attempt_id, measure) VALUES(3, 'trial_time_s')");
     EXPECT_NE(replay("3").out.find("DIFFERS in trial_time_s: stored none"), std::string::npos);
 
     change(

@@ -109,20 +109,12 @@ public:
     Showman(window::Desk& desk, std::function<void(const Moment&)> look) : desk_(desk), look_(std::move(look)) {}
 
     plan::ParticipantKind kind() const override { return plan::ParticipantKind::Simulated; }
-    std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams&, const plan::Condition&) override {
-        return nullptr;
-    }
-    DeviceDescription describe(const simulated::DeviceParams& preset) const override {
-        return simulated::describe(preset);
-    }
     std::span<loop::ScreenRing* const> screens() override { return screens_; }
-    session::Presentation presented(std::int64_t, std::int64_t, std::int64_t) override {
+    std::optional<session::Presentation> presented(std::int64_t, std::int64_t, std::int64_t) override {
         session::Presentation given;
         given.drawn_pose = "proxy";
         return given;
     }
-    session::QuestionnaireSource* answers() override { return nullptr; }
-    session::InstructionReader* reader() override { return nullptr; }
     void begins(session::Apparatus&, const session::SessionSetup& setup) override {
         plan_ = &*setup.plan;
         desk_.bring({presenter::SessionBegun{setup.participant, setup.trials, {}, setup.plan->view}}, {});
@@ -140,7 +132,6 @@ public:
         desk_.bring({presenter::AttemptPrepared{trial_index, condition.name, *scene, brief}}, {});
         if (condition.timed_by == plan::TimedBy::Program) look_(moment_);
     }
-    bool builds(double) override { return true; }
     void betweenSteps(session::Session& session) override {
         moment_.in_trial = false;
         bring();
