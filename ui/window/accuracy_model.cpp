@@ -54,6 +54,7 @@ AccuracyModel::AccuracyModel(Desk& desk, Studies& studies, const truth::TickEffo
         emit changed();
         emit workChanged();  // what may be measured now
     });
+    readStored();  // of the study that was chosen before this was here
 }
 
 /// A session has the machine for itself.

@@ -139,7 +139,12 @@ TEST_F(AccuracyPage, ASettingIsMeasuredChosenInThePictureAndWrittenIntoTheStudy)
 class StoredFront : public AccuracyPage {
 protected:
     StoredFront() {
-        const auto plan = run::readProtocol(fileOf("small"));
+        writeFront("small");
+        std::ofstream(run::frontPath(fileOf("other"))) << "no table";
+    }
+
+    void writeFront(const char* study) const {
+        const auto plan = run::readProtocol(fileOf(study));
         if (!plan) throw std::runtime_error(toString(plan.errors().front()));
         run::FrontFile file = run::newFrontFile("0123abc");
         file.machine = "an abacus";
@@ -158,8 +163,7 @@ protected:
             front.measured.rows.push_back(row);
         }
         file.fronts.push_back({plan->conditions[0].name, run::conditionMark(plan->conditions[0]), front});
-        std::ofstream(run::frontPath(fileOf("small"))) << run::frontFileText(file);
-        std::ofstream(run::frontPath(fileOf("other"))) << "no table";
+        std::ofstream(run::frontPath(fileOf(study))) << run::frontFileText(file);
     }
 };
 
@@ -178,6 +182,14 @@ TEST_F(StoredFront, IsShownWithItsOriginUntilItIsMeasuredHere) {
     openPart(3);
     waitFor([&] { return textOf("accuracyTold") != "(not shown)"; });
     EXPECT_NE(textOf("accuracyTold").find("study.front.csv"), std::string::npos) << textOf("accuracyTold");
+}
+
+TEST_F(StoredFront, OfTheStudyThatTheConsoleOpensWithIsReadToo) {
+    // Truth: closed form: what was written beside the first study of the folder.
+    open("en", true);
+    openPart(3);
+    waitFor([&] { return textOf("accuracyTold") != "(not shown)"; });
+    EXPECT_NE(textOf("accuracyTold").find("other/study.front.csv"), std::string::npos) << textOf("accuracyTold");
 }
 
 TEST_F(AccuracyPage, TheKeyboardGoesAlongTheFrontAndThroughTheTable) {
