@@ -67,13 +67,14 @@ private:
 bool sendAll(int connection, std::string_view bytes) {
     while (!bytes.empty()) {
         const ssize_t sent = send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+        if (sent < 0 && errno == EINTR) continue;
         if (sent <= 0) return false;
         bytes.remove_prefix(static_cast<std::size_t>(sent));
     }
     return true;
 }
 
-/// Everything up to the sender's end; nothing if that does not come in time or is too long.
+/// Everything up to the sender's end; nothing if that does not come in time or is too long. A signal ends no wait.
 std::optional<std::string> receiveAll(int connection, std::chrono::milliseconds limit) {
     const auto end = std::chrono::steady_clock::now() + limit;
     std::string message;
@@ -81,9 +82,11 @@ std::optional<std::string> receiveAll(int connection, std::chrono::milliseconds 
     while (message.size() <= kLongestMessage) {
         const auto rest = std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
         pollfd waiting{connection, POLLIN, 0};
-        if (rest.count() <= 0 || poll(&waiting, 1, static_cast<int>(rest.count())) <= 0) return std::nullopt;
-        const ssize_t count = recv(connection, buffer.data(), buffer.size(), 0);
-        if (count < 0) return std::nullopt;
+        if (rest.count() <= 0) return std::nullopt;
+        const int ready = poll(&waiting, 1, static_cast<int>(rest.count()));
+        const ssize_t count = ready > 0 ? recv(connection, buffer.data(), buffer.size(), 0) : ready;
+        if (count < 0 && errno == EINTR) continue;
+        if (ready <= 0 || count < 0) return std::nullopt;
         if (count == 0) return message;
         message.append(buffer.data(), static_cast<std::size_t>(count));
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -54,7 +55,9 @@ ssize_t sent(const std::string& path, std::string_view bytes) {
     (void)send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     shutdown(connection, SHUT_WR);
     char answer[64];
-    const ssize_t length = recv(connection, answer, sizeof answer, 0);
+    ssize_t length = 0;
+    do length = recv(connection, answer, sizeof answer, 0);
+    while (length < 0 && errno == EINTR);  // by the fuzzer's own clock
     close(connection);
     return length;
 }
