@@ -73,4 +73,26 @@ void Certificates::noteProof(std::uint32_t i, double least, double limit) noexce
     spheres_[i].tried = least > needed ? 0 : look_;
 }
 
+void Certificates::noteRead(std::uint32_t i, double least) noexcept {
+    if (spheres_.empty()) return;
+    spheres_[i].read = least;
+    spheres_[i].read_look = look_;
+}
+
+bool Certificates::readsWithin(std::uint32_t i, const Vec3& centre, double radius, double low, double high) noexcept {
+    if (spheres_.empty()) return false;
+    const Sphere& sphere = spheres_[i];
+    if (sphere.read_look == 0 || look_ - sphere.read_look >= kPoses) return false;
+    const auto isWithin = [&](double way) {
+        return change_.leastAround(sphere.read, way) > std::max(low, 0.0) &&
+               (std::isinf(high) || change_.mostAround(sphere.read, way) < high);
+    };
+    if (!isWithin(0.0)) return false;
+    return sphere.read_look == look_ || isWithin(waySince(sphere.read_look, centre, radius));
+}
+
+double Certificates::provableFrom(double limit) const noexcept {
+    return limit + 2.0 * std::max(accuracy_, kDeepAccuracy * std::abs(limit));
+}
+
 }  // namespace passung::contact

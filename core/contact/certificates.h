@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/types.h"
+#include "core/field/distance_field.h"
 
 namespace passung::contact {
 
@@ -19,13 +20,17 @@ namespace passung::contact {
 ///   A traversal prunes by the true φ in any case (queryContacts); but what it reads may be below `limit` where the
 /// true φ is above, by what the field errs. So that the same is found with certificates and without, as much is left
 /// between: the accuracy that the field was built to, and a tenth of depth.
+/// Besides, of fields of which is known how their values change from place to place (DistanceField::change): what was
+/// read of a leaf's points, the least as v, says what is read of them later, and needs no accuracy and no proof,
+///   v' ≥ leastAround(v, |X p - X_r p|).
 /// Limit cases: the same pose → m holds as it is. More than kPoses looks ago → nothing is known; a certificate that is
 /// asked for is renewed before. A field with holes, or no memory → nothing is ever proven.
 class Certificates {
 public:
     Certificates() = default;  // no memory
     /// `accuracy`: of the field near the surface [m].
-    Certificates(std::size_t spheres, double accuracy) : spheres_(spheres), accuracy_(accuracy) {}
+    Certificates(std::size_t spheres, double accuracy, const field::ReadChange& change = {})
+        : spheres_(spheres), change_(change), accuracy_(accuracy) {}
 
     /// A look begins. rt-safe, as all below.
     void begin(const Pose& X_FS) noexcept;
@@ -41,6 +46,13 @@ public:
     /// As note(), from what paid to be proven.
     void noteProof(std::uint32_t i, double least, double limit) noexcept;
 
+    /// The least that was read of the points in sphere `i` in this look.
+    void noteRead(std::uint32_t i, double least) noexcept;
+    /// True if for that reason none of them is read below `low` now, and the least not above `high`.
+    bool readsWithin(std::uint32_t i, const Vec3& centre, double radius, double low, double high) noexcept;
+    /// paysToProve() is false of what was read below this.
+    double provableFrom(double limit) const noexcept;
+
     /// The point of the shell that was deepest or nearest in the last look that found one: where the next one is told
     /// by φ at it how deep it will get, it passes over what is not that deep before it gets there.
     std::uint32_t deepest = kNone;
@@ -54,6 +66,8 @@ private:
         double proven = 0.0;
         std::uint32_t look = 0;   // 0: never
         std::uint32_t tried = 0;  // last look of a proof that failed
+        std::uint32_t read_look = 0;
+        double read = 0.0;
     };
     struct View {
         Mat3 R = Mat3::Zero();
@@ -71,6 +85,7 @@ private:
     std::vector<Sphere> spheres_;
     std::array<View, kPoses> views_;
     std::array<Change, kPoses> changes_;
+    field::ReadChange change_;
     double accuracy_ = 0.0;
     std::uint32_t look_ = 0;
 };

@@ -160,9 +160,21 @@ struct Traversal {
 
     /// True if earlier looks have proven that a node holds nothing that is asked for.
     bool isPassed(std::uint32_t node) noexcept {
-        return known != nullptr &&
+        return known != nullptr && !request.every_node &&
                known->above(node, shell.nodes()[node].centre, shell.nodes()[node].radius,
                             std::max(request.collect_below, std::min(expected, finds.pruneAbove())) + 2.0 * plan.slack);
+    }
+
+    /// True if what was read of a leaf earlier says so of its points, and of no more: what could be proven of it now
+    /// would be, were it read.
+    bool isLeafPassed(std::uint32_t leaf) noexcept {
+        if (known == nullptr) return false;
+        const shell::SphereNode& node = shell.nodes()[leaf];
+        const double provable = request.every_node ? kInfinity : known->provableFrom(finds.pruneAbove());
+        if (!known->readsWithin(leaf, node.centre, node.radius, finds.pruneAbove() + 2.0 * plan.slack, provable))
+            return false;
+        finds.answer.points_spared += static_cast<int>(node.count);
+        return true;
     }
 
     /// What was deepest in the last look tells how deep this one gets at least.
@@ -182,6 +194,8 @@ struct Traversal {
             float least = batch.read[first];
             for (end = first + 1; end < batch.count && batch.owner[end] == node; ++end)
                 least = std::min(least, batch.read[end]);
+            known->noteRead(node, static_cast<double>(least));
+            if (request.every_node) continue;
             const shell::SphereNode& leaf = shell.nodes()[node];
             if (!known->paysToProve(node, leaf.centre, leaf.radius, static_cast<double>(least), limit)) continue;
             known->noteProof(node, leastBound(leaf), limit);
@@ -322,13 +336,16 @@ struct Traversal {
                 ++leaves;
                 continue;
             }
-            for (; leaves < heap.size(); ++leaves) {
+            // Those that are passed take their room, so that the others are looked at in the same company.
+            for (std::uint32_t room = 0; leaves < heap.size(); ++leaves) {
                 const std::uint32_t node = heap[leaves].node;
                 const shell::SphereNode& leaf = shell.nodes()[node];
-                if (batch.count + leaf.count > kBatch) break;
-                if (!isPassed(node)) batch.append(shell.positions(), leaf.first, leaf.count, node);
+                if (room + leaf.count > kBatch) break;
+                if (isPassed(node)) continue;
+                room += leaf.count;
+                if (!isLeafPassed(node)) batch.append(shell.positions(), leaf.first, leaf.count, node);
             }
-            evaluateBatch();
+            if (batch.count > 0) evaluateBatch();
         }
     }
 
@@ -407,7 +424,7 @@ struct Traversal {
             const shell::SphereNode& node = shell.nodes()[entry.node];
             if (entry.bound >= finds.pruneAbove()) continue;
             if (node.leaf) {
-                if (!isPassed(entry.node)) evaluateLeaf(entry.node, entry.bound);
+                if (!isPassed(entry.node) && !isLeafPassed(entry.node)) evaluateLeaf(entry.node, entry.bound);
                 continue;
             }
             push(node.first, node.count, entry.bound);

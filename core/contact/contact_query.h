@@ -100,6 +100,8 @@ struct QueryRequest {
     bool load = false;    // instead of contacts in the manifold QueryAnswer::load; where many points are in contact,
                           // neighbours may then be taken as one
     bool edges = false;   // what lies on edges between their samples is searched too (queryObstacles: edge_search.h)
+    // Every node that pruning leaves is looked at, whatever earlier looks have proven: only leaves' points are spared.
+    bool every_node = false;
     bool refine = false;  // the deepest point is searched on the surface between the samples too
 };
 
@@ -113,7 +115,8 @@ struct QueryAnswer {
     double quality = 1.0;           // share of the shell's area pruned with proof or evaluated point by point
     int nodes_visited = 0;
     int points_tested = 0;
-    int contacts = 0;  // points with φ < collect_below, those taken as one included
+    int points_spared = 0;  // in leaves of which earlier readings told that they hold nothing that is asked for
+    int contacts = 0;       // points with φ < collect_below, those taken as one included
     Wrench load;  // if asked for: Σ area · depth · (-normal) over the contacts, about the shell's origin, world axes
     bool budget_reached = false;
     bool manifold_full = false;
@@ -132,8 +135,9 @@ struct QueryAnswer {
 ///   evaluated. With `spheres` its sphere enters the manifold besides, with φ = b: what keeps the sphere out keeps its
 ///   points out.
 /// With `known`, of this shell in this field, nodes are passed over that earlier looks have proven to hold nothing that
-/// is asked for (certificates.h): the answer is the same but for what it took, `nodes_visited` and `points_tested`.
-/// Appends to `manifold`. rt-safe; the number of steps is bounded by the number of nodes.
+/// is asked for (certificates.h): the answer is the same but for what it took, `nodes_visited` and points; with
+/// `every_node` for points alone. Appends to `manifold`. rt-safe; the number of steps is bounded by the
+/// number of nodes.
 /// @pre `workspace` has room for all nodes of `shell`; poses are finite.
 QueryAnswer queryContacts(const field::DistanceField& field, const Pose& X_WF, const shell::SphereTree& shell,
                           const Pose& X_WS, const QueryRequest& request, QueryWorkspace& workspace,

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -63,6 +65,23 @@ struct FieldAccuracy {
 struct FieldSample {
     double phi = 0.0;              // signed distance [m], positive outside
     Vec3 gradient = Vec3::Zero();  // of the interpolant [-]; about unit length, points out of the part
+};
+
+/// How what is read of a field (FieldMode::Trilinear) changes along a way; see DistanceField::change.
+struct ReadChange {
+    double within = 0.0;    // values beyond this say nothing [m]; 0: nothing is known
+    double steepest = 0.0;  // per metre
+    double jump = 0.0;      // besides, of a way shorter than a brick [m]
+
+    /// No point within `way` [m] of one that was read as `value` is read below this, if this is not below 0.
+    double leastAround(double value, double way) const noexcept {
+        return std::min(value, within) - steepest * way - jump;
+    }
+    /// The same from above, if that is below `within`; else infinity.
+    double mostAround(double value, double way) const noexcept {
+        const double most = value + steepest * way + jump;
+        return most < within ? most : std::numeric_limits<double>::infinity();
+    }
 };
 
 /// Signed distance field: exact distances at the nodes of bricks of 8³ cells near the surface (9³ samples, shared
@@ -132,6 +151,19 @@ public:
     ///   and as much for the projection. The others: the bound of trilinear and what the two values differ by. Holes
     ///   left open: |interpolant| + the upper bound of d(p) above.
     double errorBound(const Vec3& p, FieldMode mode) const noexcept;
+
+    /// How sample() and sampleMany() change, known of a field with bricks of one size and no holes.
+    ///   Stored numbers are off by half a step s of their brick at most and their exact values 1-Lipschitz, so that
+    ///   along
+    /// an axis an interpolant rises by at most 1 + s/edge, along any way by √3 times that. From brick to brick it jumps
+    /// by a step at most.
+    ///   Outside the bricks, where cells are large, nothing of that holds. But there all values, and those of the
+    ///   bricks
+    /// at the border, have a size of at least m, on each side of the surface with one sign: both are looked up. On a
+    /// way from a value v > 0 to one below L, 0 ≤ L < min(v, m), the last piece within bricks, and be it all of the
+    /// way, begins at v or at m or above, so that the way is at least  (min(v, m) - L - jumps) / steepest.
+    ///   Limit cases: cells of several sizes, or holes → `within` = 0, and nothing is told.
+    const ReadChange& change() const { return change_; }
 
     /// False if the geometry has holes that were left open: see lowerBound and errorBound.
     bool boundProven() const { return bound_proven_; }
@@ -207,6 +239,12 @@ private:
     FieldSample sampleAt(const Spot& spot, FieldMode mode, const Vec3& inward) const noexcept;
     bool soundGrid() const;
     bool soundBricks() const;
+    template <class Take>
+    void takeCorners(const std::array<int, 3>& cell, Take take) const;
+    template <class Take>
+    void takeBorder(std::size_t brick, const std::array<int, 3>& side, Take take) const;
+    double leastOutsideBricks() const;
+    void measureChange();
     void fillIndex();
     void indexBrick(std::int32_t id, const std::array<int, 3>& place);
     void enterIndex(std::int32_t id, const std::array<int, 3>& place, int finer);
@@ -247,6 +285,7 @@ private:
     Index index_;
 
     std::vector<Head> heads_;
+    ReadChange change_;
 };
 
 }  // namespace passung::field

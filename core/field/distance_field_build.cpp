@@ -71,6 +71,7 @@ Result<DistanceField> DistanceField::build(const DistanceSource& source, double 
         return Error{.message = kTooLarge};
     }
     field.fillIndex();
+    field.measureChange();
     return field;
 }
 

@@ -120,6 +120,7 @@ std::optional<DistanceField> DistanceField::fromBytes(std::string_view bytes) {
     for (std::uint16_t& sample : field.samples_) sample = static_cast<std::uint16_t>(reader.take(2));
     if (!reader.atEnd()) return std::nullopt;
     field.fillIndex();
+    field.measureChange();
     return field;
 }
 

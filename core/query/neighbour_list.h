@@ -20,22 +20,25 @@ public:
     static constexpr std::size_t kMost = 1000;  // beyond, a tree finds them faster
 
     /// As TriangleTree::closestTo. @pre after collect: `t` lies within its box, and `limit` is not larger than its.
-    geometry::TrianglePair closestTo(const geometry::TriangleCorners& t, double limit) const;
+    geometry::TrianglePair closestTo(const geometry::TriangleCorners& t, double limit);
 
 private:
-    struct Neighbour {
-        double end;  // how far it reaches along way_ [m]
-        Vec3 middle;
-        double reach;  // of the corners from the middle [m]
-        geometry::TriangleCorners corners;
+    /// One number of each triangle, for loops over many.
+    struct Numbers {
+        std::vector<double> end;             // how far it reaches along way_ [m]
+        std::vector<double> x, y, z, reach;  // a sphere around it
+        void resize(std::size_t count);
     };
+    std::size_t findCandidates(const Vec3& middle, double begin, double reach, double limit);
 
     const geometry::TriangleTree* tree_ = nullptr;
     double rounding_ = 0.0;
     bool collected_ = false;
-    std::vector<Neighbour> neighbours_;
-    Vec3 way_ = Vec3::Zero();  // in which they are measured
-    double highest_ = 0.0;     // how far any of them reaches [m]
+    std::vector<geometry::TriangleCorners> corners_;
+    Numbers of_;                             // corners_
+    std::vector<std::uint32_t> candidates_;  // room for all
+    Vec3 way_ = Vec3::Zero();                // in which they are measured
+    double highest_ = 0.0;                   // how far any of them reaches [m]
     std::vector<std::uint32_t> places_;
 };
 

@@ -20,6 +20,7 @@ void merge(const contact::QueryAnswer& answer, contact::QueryAnswer& all) noexce
     all.quality = std::min(all.quality, answer.quality);
     all.nodes_visited += answer.nodes_visited;
     all.points_tested += answer.points_tested;
+    all.points_spared += answer.points_spared;
     all.contacts += answer.contacts;
     all.load.force += answer.load.force;
     all.load.torque += answer.load.torque;
@@ -93,7 +94,8 @@ contact::QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, co
 }
 
 std::uint32_t workOf(const contact::QueryAnswer& answer) noexcept {
-    return static_cast<std::uint32_t>(answer.nodes_visited + answer.points_tested + 2 * answer.contacts);
+    return static_cast<std::uint32_t>(answer.nodes_visited + answer.points_tested + answer.points_spared +
+                                      2 * answer.contacts);
 }
 
 void account(const contact::QueryAnswer& answer, Report& report) noexcept {

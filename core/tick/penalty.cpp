@@ -46,7 +46,7 @@ void measureHandVelocity(HandVelocity& velocity, const HandSample& hand) noexcep
 }  // namespace
 
 contact::QueryRequest penaltyRequest(scene::PenaltyVariant variant) noexcept {
-    return {.gradients = false, .load = isWeighted(variant), .refine = true};
+    return {.gradients = false, .load = isWeighted(variant), .every_node = true, .refine = true};
 }
 
 void findContactsAtHand(const TickModel& model, const HandSample& hand, Proxy& proxy, QueryMemory& memory,
@@ -55,8 +55,9 @@ void findContactsAtHand(const TickModel& model, const HandSample& hand, Proxy& p
     proxy.X_WG = hand.X_WH;
     proxy.manifold.clear();
     clearPushes(pushes);
-    const contact::QueryAnswer answer = queryObstacles(model, hand.X_WH, penaltyRequest(model.contact.variant),
-                                                       memory.workspace, proxy.manifold, pushes.pushes);
+    const contact::QueryAnswer answer =
+        queryObstacles(model, hand.X_WH, penaltyRequest(model.contact.variant), memory.workspace, proxy.manifold,
+                       pushes.pushes, memory.near_hand);
     account(answer, report);
     load.load = answer.load;
     record.contacts = static_cast<std::uint32_t>(answer.contacts);

@@ -18,7 +18,7 @@ std::vector<PairCertificates> certificatesOf(const TickModel& model) {
     const auto of = [&](const shell::SphereTree& shell, const shell::EdgeCurves& edges,
                         const field::DistanceField& field) {
         const double accuracy = std::max(model.contact.tolerance, model.contact.cell > 0.0 ? field.cell() : 0.0);
-        return contact::ShellCertificates{contact::Certificates(shell.nodes().size(), accuracy),
+        return contact::ShellCertificates{contact::Certificates(shell.nodes().size(), accuracy, field.change()),
                                           contact::Certificates(edges.stretches().size(), accuracy)};
     };
     for (const Obstacle& obstacle : model.obstacles) {
@@ -49,6 +49,8 @@ void addQueryMemory(const TickModel& model, Proxy& proxy, QueryMemory& memory) {
     // Of budgets not: what they leave depends on what is looked at first.
     if (model.hasFieldProxy() && model.contact.budget_nodes == 0)
         memory.near_proxy = memory.near_hand = certificatesOf(model);
+    else if (model.contact.budget_nodes == 0)
+        memory.near_hand = certificatesOf(model);
 }
 
 }  // namespace

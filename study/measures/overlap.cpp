@@ -27,9 +27,11 @@ void markLargest(std::span<const TickRecord> ticks, Quantity quantity, bool Tick
 }  // namespace
 
 std::vector<TickOverlap> ticksToJudge(std::span<const TickRecord> records, const TrialContext& context) {
-    std::vector<TickRecord> ticks;
-    for (const TickRecord& record : records)
-        if (record.tick >= context.start_tick && record.tick < context.end_tick) ticks.push_back(record);
+    const auto begin = std::find_if(records.begin(), records.end(),
+                                    [&](const TickRecord& record) { return record.tick >= context.start_tick; });
+    const auto end =
+        std::find_if(begin, records.end(), [&](const TickRecord& record) { return record.tick >= context.end_tick; });
+    const std::span<const TickRecord> ticks(begin, end);
     std::map<std::int64_t, TickOverlap> judged;
     std::int64_t contacts = 0;
     for (const TickRecord& record : ticks)

@@ -57,8 +57,14 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
         std::size_t scene;
     };
     std::map<std::int64_t, Shown> shown;
+    for (const measures::TickOverlap& tick : ticks) shown[tick.tick] = {};
     TurnOf turn(scenes.turns);
-    for (const TickRecord& record : trial) shown[record.tick] = {shownPose(record), turn.next(record)};
+    auto judged = shown.begin();
+    for (const TickRecord& record : trial) {
+        const std::size_t scene = turn.next(record);
+        while (judged != shown.end() && judged->first < record.tick) ++judged;
+        if (judged != shown.end() && judged->first == record.tick) judged->second = {shownPose(record), scene};
+    }
     // Those that are likely the deepest first, should the work not suffice for all.
     std::vector<measures::TickOverlap*> order;
     for (measures::TickOverlap& tick : ticks) order.push_back(&tick);

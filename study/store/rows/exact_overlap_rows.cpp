@@ -6,8 +6,9 @@ namespace passung::store {
 
 void insertExactOverlaps(const Database& database, std::int64_t attempt_id,
                          const std::vector<measures::TickOverlap>& overlaps) {
+    std::optional<Statement> insert;
     for (const measures::TickOverlap& tick : overlaps)
-        insertRow(database, "exact_overlap", Named{"attempt_id", attempt_id}, Named{"tick", tick.tick},
+        insertRow(insert, database, "exact_overlap", Named{"attempt_id", attempt_id}, Named{"tick", tick.tick},
                   Named{"every_20th", tick.every_20th}, Named{"largest_depth", tick.largest_depth},
                   Named{"largest_force", tick.largest_force}, Named{"overlap_m", tick.depth},
                   Named{"bound_m", tick.bound});

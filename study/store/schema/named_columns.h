@@ -33,6 +33,14 @@ void insertRow(const Database& database, const char* table, const Named<Values>&
     database.prepare(insertText("INSERT", table, {values.column...})).bind(values.value...).run();
 }
 
+/// Adds one of several rows of a table; `kept` is the statement of all, which the first prepares.
+template <class... Values>
+void insertRow(std::optional<Statement>& kept, const Database& database, const char* table,
+               const Named<Values>&... values) {
+    if (!kept) kept.emplace(database.prepare(insertText("INSERT", table, {values.column...})));
+    kept->bind(values.value...).run();
+}
+
 /// Adds a row unless its key is there.
 template <class... Values>
 void insertRowIfNew(const Database& database, const char* table, const Named<Values>&... values) {

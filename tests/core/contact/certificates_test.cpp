@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -110,6 +111,55 @@ TEST(Certificates, LeaveWhatALookFindsAndSpareMostOfItsReadings) {
     RecordProperty("points_read_without", static_cast<int>(read_without));
     EXPECT_LT(read, read_without / 2);
     EXPECT_LT(visited, visited_without * 6 / 10);
+}
+
+/// The same in cells of one size, of which is known how what is read of them changes.
+TEST(Certificates, SpareLeavesOfUniformCellsAndNothingElse) {
+    // Truth: invariant, bit for bit, nodes that are visited included.
+    const auto uniform = [](const shape::Shape& shape) {
+        scene::PartSpec spec;
+        spec.geometry = shape;
+        auto part = scene::buildPart(spec, {.field = true, .shell = true, .cell = 0.5e-3, .spacing = 1e-3});
+        EXPECT_TRUE(part);
+        return std::move(*part);
+    };
+    const scene::Part plate = uniform(shape::BorePlate{0.06, 0.06, 0.03, 0.0205, 0.025, 0.5e-3});
+    const scene::Part peg = uniform(shape::Peg{0.02, 0.05, 0.5e-3});
+    ASSERT_GT(plate.field->change().within, 0.5e-3);
+    contact::QueryWorkspace workspace(peg.shell->nodes().size());
+    const Pose X_WF{rotationFromVector(Vec3(0.3, -0.2, 0.5)), Vec3(0.01, 0.02, 0.03)};
+    // As the penalty asks, and as god objects do.
+    const std::array<contact::QueryRequest, 3> requests{
+        {{.gradients = false, .every_node = true, .refine = true},
+         {.collect_below = 40e-6, .every_below = 2e-6, .search_below = 100e-6, .facing = true},
+         {.collect_below = -1e300}}};
+    for (const contact::QueryRequest& request : requests) {
+        // Certificates of nodes are made without what is known of the cells, so that they are the same in both.
+        contact::Certificates with_change(peg.shell->nodes().size(), 0.5e-3, plate.field->change());
+        contact::Certificates without_change(peg.shell->nodes().size(), 0.5e-3);
+        Wander wander;
+        std::size_t read = 0, read_without = 0, spared = 0, contacts = 0;
+        for (int i = 0; i < 3000; ++i) {
+            const Pose X_WS = X_WF * wander.next();
+            const auto look = [&](contact::Certificates& known) {
+                Look found{{}, contact::ContactManifold(peg.shell->points().size())};
+                found.answer = contact::queryContacts(*plate.field, X_WF, *peg.shell, X_WS, request, workspace,
+                                                      found.manifold, &known);
+                return found;
+            };
+            const Look with = look(with_change), without = look(without_change);
+            expectSame(with, without);
+            EXPECT_EQ(with.answer.nodes_visited, without.answer.nodes_visited);
+            EXPECT_EQ(with.answer.points_tested + with.answer.points_spared, without.answer.points_tested);
+            if (HasFailure()) return;
+            read += static_cast<std::size_t>(with.answer.points_tested);
+            read_without += static_cast<std::size_t>(without.answer.points_tested);
+            spared += static_cast<std::size_t>(with.answer.points_spared);
+            contacts += static_cast<std::size_t>(with.answer.contacts);
+        }
+        EXPECT_GT(spared, read_without / 10) << read;
+        EXPECT_GT(contacts + spared, 1000u);
+    }
 }
 
 TEST(Certificates, HoldForEveryPointOfASphereThatMoves) {

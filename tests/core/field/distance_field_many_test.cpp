@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -101,6 +102,54 @@ TEST(SampleMany, GivesTheSameBitsWithAllInstructionsAndInAnyGrouping) {
             EXPECT_EQ(std::memcmp(&phi, &baseline[i], sizeof(float)), 0) << i;
         }
     }
+}
+
+TEST(ReadChange, HoldsOnEveryWayBesideTheSurface) {
+    // Truth: invariant, by pairs of points: along faces, across rims, from bricks to the coarse cells and back.
+    scene::PartSpec spec;
+    spec.geometry = shape::BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001};
+    const auto part = scene::buildPart(spec, {.field = true, .cell = 0.5e-3});
+    ASSERT_TRUE(part);
+    const DistanceField& field = *part->field;
+    const ReadChange& change = field.change();
+    ASSERT_GT(change.within, 0.5e-3);  // bricks reach two cells at least
+    Random random(11);
+    const auto vector = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
+    Points from, to;
+    for (int i = 0; i < 400'000; ++i) {
+        const double angle = random.uniform(-3.2, 3.2), r = 0.0101 + 0.002 * random.normal();
+        const Vec3 in_bore(r * std::cos(angle), r * std::sin(angle), random.uniform(-0.028, 0.002));
+        const Vec3 anywhere(random.uniform(-0.035, 0.035), random.uniform(-0.035, 0.035),
+                            random.uniform(-0.035, 0.005));
+        const Vec3 p = i % 3 == 0 ? anywhere : in_bore;
+        from.add(p);
+        to.add(p + std::pow(10.0, random.uniform(-6.0, -3.0)) * vector().normalized());
+    }
+    std::vector<float> before(from.x.size()), after(from.x.size());
+    const DistanceField::Placement still = field.place({});
+    field.sampleMany(still, from.x, from.y, from.z, before);
+    field.sampleMany(still, to.x, to.y, to.z, after);
+    int told = 0;
+    double nearest = 1.0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        const double way = (to.at(i) - from.at(i)).norm(), value = static_cast<double>(before[i]);
+        const double least = change.leastAround(value, way), most = change.mostAround(value, way);
+        if (least >= 0.0) {
+            ++told;
+            ASSERT_GE(static_cast<double>(after[i]), least) << from.at(i).transpose() << " to " << to.at(i).transpose();
+            nearest = std::min(nearest, (static_cast<double>(after[i]) - least) / way);
+        }
+        if (value > 0.0 && std::isfinite(most)) ASSERT_LE(static_cast<double>(after[i]), most);
+    }
+    EXPECT_GT(told, 50'000);
+    EXPECT_LT(nearest, 1.0) << "the bound is not idle: the steepest way found uses so much less than it allows";
+}
+
+TEST(ReadChange, IsUnknownInCellsOfSeveralSizesAndInHoles) {
+    // Truth: the contract in the header.
+    for (const DistanceField& field : someFields())
+        if (field.finestCell() < field.cell() || field.sheetOffset() > 0.0) EXPECT_EQ(field.change().within, 0.0);
+    EXPECT_EQ(ReadChange{}.leastAround(1.0, 0.0), 0.0);
 }
 
 TEST(LowerBounds, AreNeverAboveTheDistanceAndHardlyBelowTheOneOfEachPoint) {
