@@ -62,47 +62,6 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Memory of a traversal, sized once for a tree.
-class QueryWorkspace {
-public:
-    explicit QueryWorkspace(std::size_t nodes = 0) : heap_(nodes), near_(nodes * shell::SphereTree::kLeafGroups) {}
-
-private:
-    struct Entry {
-        double bound;  // no point below the node is nearer than this [m]
-        double order;  // the least is taken first
-        std::uint32_t node;
-    };
-    struct Near {
-        float phi;  // at the group's mean position
-        std::uint32_t group;
-    };
-    std::vector<Entry> heap_;
-    std::vector<Near> near_;
-    friend struct Traversal;
-};
-
-/// What a query is asked for.
-struct QueryRequest {
-    double collect_below = 0.0;  // points with φ < this go into the manifold [m] (the thesis's p_c)
-    // Of those at this or above it only the nearest of each leaf and octant of the normal [m]; with gradients, in
-    // FieldMode::Trilinear.
-    double every_below = std::numeric_limits<double>::infinity();
-    double search_below = 0.0;  // the deepest or closest point is searched up to this φ [m]
-    int max_nodes = 0;          // budget (the thesis's η_c, in nodes so that it is deterministic); 0 = none
-    field::FieldMode mode = field::FieldMode::Trilinear;
-    bool prove = false;     // also find QueryAnswer::lower_bound; costs about as much again
-    bool spheres = false;   // a node left over by the budget also enters the manifold as a sphere
-    bool gradients = true;  // of every contact; without them, φ of contacts is read in single precision, several times
-                            // as fast (DistanceField::sampleMany), in FieldMode::Trilinear
-    bool facing = false;  // a sample of a face is a contact only where the other surface faces it, not at a rim, whose
-                          // own samples are then asked too (two_way); with gradients; not of open sheets
-    bool load = false;    // instead of contacts in the manifold QueryAnswer::load; where many points are in contact,
-                          // neighbours may then be taken as one
-    bool edges = false;   // what lies on edges between their samples is searched too (queryObstacles: edge_search.h)
-    bool refine = false;  // the deepest point is searched on the surface between the samples too
-};
-
 struct QueryAnswer {
     bool found = false;             // a point with φ < search_below exists
     double phi = 0.0;               // of the deepest or closest point if found, else search_below (a lower bound)
@@ -116,7 +75,61 @@ struct QueryAnswer {
     int contacts = 0;  // points with φ < collect_below, those taken as one included
     Wrench load;  // if asked for: Σ area · depth · (-normal) over the contacts, about the shell's origin, world axes
     bool budget_reached = false;
+    bool paused = false;  // QueryRequest::pauses: nothing else but the counts says anything yet
     bool manifold_full = false;
+};
+
+/// Memory of a traversal, sized once for a tree, and in it the traversal that waits for more budget.
+class QueryWorkspace {
+public:
+    explicit QueryWorkspace(std::size_t nodes = 0) : heap_(nodes), near_(nodes * shell::SphereTree::kLeafGroups) {}
+    /// Forgets what waits.
+    void drop() noexcept { pause_.open = false; }
+
+private:
+    struct Entry {
+        double bound;  // no point below the node is nearer than this [m]
+        double order;  // the least is taken first
+        std::uint32_t node;
+    };
+    struct Near {
+        float phi;  // at the group's mean position
+        std::uint32_t group;
+    };
+    /// Nodes that wait are the first of heap_.
+    struct Pause {
+        bool open = false;
+        std::size_t waiting = 0;
+        QueryAnswer answer;
+        std::uint32_t deepest = 0;
+        double expected = 0.0;
+    };
+    std::vector<Entry> heap_;
+    std::vector<Near> near_;
+    Pause pause_;
+    friend struct Traversal;
+};
+
+/// What a query is asked for.
+struct QueryRequest {
+    double collect_below = 0.0;  // points with φ < this go into the manifold [m] (the thesis's p_c)
+    // Of those at this or above it only the nearest of each leaf and octant of the normal [m]; with gradients, in
+    // FieldMode::Trilinear.
+    double every_below = std::numeric_limits<double>::infinity();
+    double search_below = 0.0;  // the deepest or closest point is searched up to this φ [m]
+    int max_nodes = 0;          // budget (the thesis's η_c, in nodes so that it is deterministic); 0 = none
+    bool pauses = false;        // where the budget ends the query waits in its workspace, for more (queryContacts)
+    field::FieldMode mode = field::FieldMode::Trilinear;
+    bool prove = false;     // also find QueryAnswer::lower_bound; costs about as much again
+    bool spheres = false;   // a node left over by the budget also enters the manifold as a sphere
+    bool gradients = true;  // of every contact; without them, φ of contacts is read in single precision, several times
+                            // as fast (DistanceField::sampleMany), in FieldMode::Trilinear
+    bool facing = false;  // a sample of a face is a contact only where the other surface faces it, not at a rim, whose
+                          // own samples are then asked too (two_way); with gradients; not of open sheets
+    bool load = false;    // instead of contacts in the manifold QueryAnswer::load; where many points are in contact,
+                          // neighbours may then be taken as one
+    bool edges = false;   // what lies on edges between their samples is searched too (queryObstacles: edge_search.h)
+    bool refine = false;  // the deepest point is searched on the surface between the samples too
 };
 
 /// Collision, proximity and penalty in one traversal of a point-sphere tree against a distance field.
@@ -131,6 +144,9 @@ struct QueryAnswer {
 ///   below (the wrench of a constant pressure stays the same), and `quality` says which share of the area was proven or
 ///   evaluated. With `spheres` its sphere enters the manifold besides, with φ = b: what keeps the sphere out keeps its
 ///   points out.
+/// A query that `pauses` when its budget ends leaves no node out: the same call, with the contacts found so far in
+/// `manifold`, goes on where it stopped, by one node at least, until its answer is no longer `paused` and is that of a
+/// query without a budget. Its counts are those of one call each.
 /// With `known`, of this shell in this field, nodes are passed over that earlier looks have proven to hold nothing that
 /// is asked for (certificates.h): the answer is the same but for what it took, `nodes_visited` and `points_tested`.
 /// Appends to `manifold`. rt-safe; the number of steps is bounded by the number of nodes.

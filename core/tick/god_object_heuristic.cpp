@@ -73,7 +73,7 @@ void relieve(const ProxyView& view, double reach, double left, LookBudget& budge
 void correctProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion,
                   QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
     const MovingProxy moving{{model, proxy, memory, report}, hand, motion, pushes};
-    startProxy(moving);
+    if (!startProxy(moving)) return;
     const double left = leftOf(model, overlap(proxy));
     for (int i = 0; i < kCorrections && overlap(proxy) > std::max(model.margins.accept, left); ++i) {
         const Pose X_before = proxy.X_WG;
@@ -163,6 +163,7 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
         if (!good || whole) break;
         reach = next_reach;
     }
+    noteLag(moving, arrived);
     if (!arrived) report.status |= kIterationLimit;
     if (suspended) report.status |= kSuspended;
     motion.last_motion = unconstrainedMotion(model, X_before, proxy.X_WG).norm();
