@@ -265,27 +265,45 @@ struct Traversal {
         return {batch.position(place_in_batch), weight.normal.cast<double>(), static_cast<double>(weight.area), point};
     }
 
-    /// Of places in the batch, leaf after leaf, in each leaf and octant of the normal the nearest that is a contact.
-    void takeNearest(std::span<std::uint32_t> near) noexcept {
-        const auto octantOf = [&](std::uint32_t i) {
-            const Eigen::Vector3f& n = shell.facings()[batch.index[i]].normal;
-            return (n.x() < 0.0f ? 1u : 0u) | (n.y() < 0.0f ? 2u : 0u) | (n.z() < 0.0f ? 4u : 0u);
+    /// Of places in the batch, all of one leaf, in each octant of the normal the nearest that is a contact: the nearest
+    /// first.
+    void takeNearestOf(std::span<const std::uint32_t> leaf) noexcept {
+        constexpr std::uint32_t kNone = kBatch;
+        const auto comesBefore = [&](std::uint32_t a, std::uint32_t b) {
+            return batch.read[a] < batch.read[b] || (batch.read[a] == batch.read[b] && a < b);
         };
+        std::array<std::uint8_t, kBatch> octant;
+        std::array<std::uint32_t, 8> next;  // of each octant
+        next.fill(kNone);
+        for (const std::uint32_t i : leaf) {
+            const Eigen::Vector3f& n = shell.facings()[batch.index[i]].normal;
+            octant[i] =
+                static_cast<std::uint8_t>((n.x() < 0.0f ? 1 : 0) | (n.y() < 0.0f ? 2 : 0) | (n.z() < 0.0f ? 4 : 0));
+            std::uint32_t& first = next[octant[i]];
+            if (first == kNone || comesBefore(i, first)) first = i;
+        }
+        for (;;) {
+            std::uint32_t i = kNone;
+            for (const std::uint32_t other : next)
+                if (other != kNone && (i == kNone || comesBefore(other, i))) i = other;
+            if (i == kNone) return;
+            const ShellSample sample = sampleAt(i);
+            const Vec3 p_F = place.inField(sample.position);
+            std::uint32_t& then = next[octant[i]];
+            then = kNone;
+            if (finds.take(p_F, sample, field.sample(p_F, request.mode))) continue;
+            for (const std::uint32_t other : leaf)
+                if (octant[other] == octant[i] && comesBefore(i, other) && (then == kNone || comesBefore(other, then)))
+                    then = other;
+        }
+    }
+
+    /// Of places in the batch, leaf after leaf.
+    void takeNearest(std::span<const std::uint32_t> near) noexcept {
         for (std::size_t first = 0; first < near.size();) {
             std::size_t end = first;
             while (end < near.size() && batch.owner[near[end]] == batch.owner[near[first]]) ++end;
-            std::array<bool, 8> done{};
-            std::span<std::uint32_t> leaf = near.subspan(first, end - first);
-            std::sort(leaf.begin(), leaf.end(), [&](std::uint32_t a, std::uint32_t b) {
-                return batch.read[a] < batch.read[b] || (batch.read[a] == batch.read[b] && a < b);
-            });
-            for (const std::uint32_t i : leaf) {
-                bool& taken = done[octantOf(i)];
-                if (taken) continue;
-                const ShellSample sample = sampleAt(i);
-                const Vec3 p_F = place.inField(sample.position);
-                taken = finds.take(p_F, sample, field.sample(p_F, request.mode));
-            }
+            takeNearestOf(near.subspan(first, end - first));
             first = end;
         }
     }
