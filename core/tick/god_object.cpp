@@ -51,12 +51,6 @@ struct StepBounds {
     double reach, search;
 };
 
-/// The pose `share` of the way from one to another.
-Pose between(const Pose& from, const Pose& to, double share) noexcept {
-    if (share == 1.0) return to;
-    return {from.q.slerp(share, to.q), from.p + share * (to.p - from.p)};
-}
-
 /// Makes what is `allowed` of `wanted` within `bounds`.
 Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const motion::Surroundings& around,
               AllowedMotion allowed, const StepBounds& bounds, const ProxyWay& way, LookBudget& budget) noexcept {
@@ -89,7 +83,7 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
         }
         const motion::Motion u = step.u;
         if (overlap(proxy) <= bounds.accepted) {
-            step.X_WH_followed = between(step.X_WH_followed, step.X_WH, step.share);
+            noteFollowed(proxy, step.X_WH, step.share);
             return {.u = u, .rubbing = step.rubbing, .made = true, .whole = step.share == 1.0, .halved = step.halved};
         }
         moving.report.status |= kStepRejected;

@@ -158,6 +158,7 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
             good = !bent || (!suspended && !cutsCorner(moving, X_before, proxy.X_WG, between));
         }
         arrived = good && whole;  // the whole constrained motion was made
+        if (good) noteFollowed(proxy, hand.X_WH, std::min(1.0, known / step_path) * std::ldexp(1.0, -half));
         if (!good) queryAround(moving, X_here, next_reach, next_reach);
         if (suspended) proxy.tried = half;
         if (!good || whole) break;

@@ -192,6 +192,11 @@ bool arriveFreely(const MovingProxy& moving, double path, double reach, double a
     return false;
 }
 
+void noteFollowed(Proxy& proxy, const Pose& X_WH, double share) noexcept {
+    Pose& followed = proxy.step.X_WH_followed;
+    followed = share == 1.0 ? X_WH : Pose{followed.q.slerp(share, X_WH.q), followed.p + share * (X_WH.p - followed.p)};
+}
+
 void noteLag(const MovingProxy& moving, bool arrived) noexcept {
     Pose& followed = moving.proxy.step.X_WH_followed;
     if (arrived) followed = moving.hand.X_WH;

@@ -112,6 +112,9 @@ double nextReach(const TickModel& model, double last_motion) noexcept;
 /// it would overlap there by more than `accepted`.
 bool arriveFreely(const MovingProxy& moving, double path, double reach, double accepted) noexcept;
 
+/// A step was made: `share` of all that a hand at `X_WH` asked for.
+void noteFollowed(Proxy& proxy, const Pose& X_WH, double share) noexcept;
+
 /// The tick's motion has ended; `arrived`: nothing is left of it. Notes what it lags behind.
 void noteLag(const MovingProxy& moving, bool arrived) noexcept;
 
