@@ -54,7 +54,7 @@ struct QueryPlan {
 
     QueryPlan(const QueryRequest& r, const field::DistanceField& field)
         : request(r),
-          ordered(r.max_nodes > 0 || r.search_below > r.collect_below),
+          ordered((r.max_nodes > 0 && !r.pauses) || r.search_below > r.collect_below),
           grouped(r.load && r.collect_below == 0.0 && !ordered && !r.prove && r.mode == field::FieldMode::Trilinear),
           gradients(r.gradients && !r.load),
           facing(r.facing && !(field.sheetOffset() > 0.0)),
@@ -139,6 +139,13 @@ public:
 
     /// The point of the shell that answer.phi belongs to; kNoPoint: none.
     std::uint32_t deepest() const noexcept { return deepest_; }
+
+    /// Goes on from what an earlier call had found.
+    void goOnFrom(const QueryAnswer& found, std::uint32_t deepest) noexcept {
+        answer = found;
+        answer.nodes_visited = answer.points_tested = answer.contacts = 0;
+        deepest_ = deepest;
+    }
 
     /// The deepest point, between the samples too.
     void refine() noexcept;

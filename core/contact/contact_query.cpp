@@ -68,7 +68,8 @@ struct Traversal {
     public:
         NodeQueue(std::vector<QueryWorkspace::Entry>& heap, bool ordered) : heap_(heap), ordered_(ordered) {}
         bool empty() const noexcept { return waiting_ == 0; }
-        std::uint32_t next() const noexcept { return heap_.front().node; }
+        std::size_t size() const noexcept { return waiting_; }
+        std::uint32_t next() const noexcept { return (ordered_ ? heap_.front() : heap_[waiting_ - 1]).node; }
         void push(const QueryWorkspace::Entry& entry) noexcept {
             heap_[waiting_++] = entry;
             if (ordered_) std::push_heap(heap_.begin(), end(), later);
@@ -77,6 +78,9 @@ struct Traversal {
             if (ordered_) std::pop_heap(heap_.begin(), end(), later);
             return heap_[--waiting_];
         }
+
+        /// What was left there.
+        void restore(std::size_t waiting) noexcept { waiting_ = waiting; }
 
     private:
         static bool later(const QueryWorkspace::Entry& a, const QueryWorkspace::Entry& b) noexcept {
@@ -144,7 +148,8 @@ struct Traversal {
                 if (known != nullptr) known->note(node, bound);
                 continue;
             }
-            const bool first = request.max_nodes > 0 && !request.spheres && node < shell.roots().size();
+            const bool first =
+                request.max_nodes > 0 && !request.spheres && !request.pauses && node < shell.roots().size();
             queue.push({bound, first ? -kInfinity : bound, node});
         }
         batch.count = 0;
@@ -180,7 +185,7 @@ struct Traversal {
     /// What was deepest in the last look tells how deep this one gets at least.
     void expect() noexcept {
         known->begin(place.S.X_FS);
-        if (!plan.ordered || known->deepest == Certificates::kNone) return;
+        if (workspace.pause_.open || !plan.ordered || known->deepest == Certificates::kNone) return;
         const Vec3 p_F = place.inField(shell.points()[known->deepest].position);
         expected = field.sample(p_F, request.mode).phi;
         ++finds.answer.points_tested;
@@ -274,27 +279,45 @@ struct Traversal {
         return {batch.position(place_in_batch), weight.normal.cast<double>(), static_cast<double>(weight.area), point};
     }
 
-    /// Of places in the batch, leaf after leaf, in each leaf and octant of the normal the nearest that is a contact.
-    void takeNearest(std::span<std::uint32_t> near) noexcept {
-        const auto octantOf = [&](std::uint32_t i) {
-            const Eigen::Vector3f& n = shell.facings()[batch.index[i]].normal;
-            return (n.x() < 0.0f ? 1u : 0u) | (n.y() < 0.0f ? 2u : 0u) | (n.z() < 0.0f ? 4u : 0u);
+    /// Of places in the batch, all of one leaf, in each octant of the normal the nearest that is a contact: the nearest
+    /// first.
+    void takeNearestOf(std::span<const std::uint32_t> leaf) noexcept {
+        constexpr std::uint32_t kNone = kBatch;
+        const auto comesBefore = [&](std::uint32_t a, std::uint32_t b) {
+            return batch.read[a] < batch.read[b] || (batch.read[a] == batch.read[b] && a < b);
         };
+        std::array<std::uint8_t, kBatch> octant;
+        std::array<std::uint32_t, 8> next;  // of each octant
+        next.fill(kNone);
+        for (const std::uint32_t i : leaf) {
+            const Eigen::Vector3f& n = shell.facings()[batch.index[i]].normal;
+            octant[i] =
+                static_cast<std::uint8_t>((n.x() < 0.0f ? 1 : 0) | (n.y() < 0.0f ? 2 : 0) | (n.z() < 0.0f ? 4 : 0));
+            std::uint32_t& first = next[octant[i]];
+            if (first == kNone || comesBefore(i, first)) first = i;
+        }
+        for (;;) {
+            std::uint32_t i = kNone;
+            for (const std::uint32_t other : next)
+                if (other != kNone && (i == kNone || comesBefore(other, i))) i = other;
+            if (i == kNone) return;
+            const ShellSample sample = sampleAt(i);
+            const Vec3 p_F = place.inField(sample.position);
+            std::uint32_t& then = next[octant[i]];
+            then = kNone;
+            if (finds.take(p_F, sample, field.sample(p_F, request.mode))) continue;
+            for (const std::uint32_t other : leaf)
+                if (octant[other] == octant[i] && comesBefore(i, other) && (then == kNone || comesBefore(other, then)))
+                    then = other;
+        }
+    }
+
+    /// Of places in the batch, leaf after leaf.
+    void takeNearest(std::span<const std::uint32_t> near) noexcept {
         for (std::size_t first = 0; first < near.size();) {
             std::size_t end = first;
             while (end < near.size() && batch.owner[near[end]] == batch.owner[near[first]]) ++end;
-            std::array<bool, 8> done{};
-            std::span<std::uint32_t> leaf = near.subspan(first, end - first);
-            std::sort(leaf.begin(), leaf.end(), [&](std::uint32_t a, std::uint32_t b) {
-                return batch.read[a] < batch.read[b] || (batch.read[a] == batch.read[b] && a < b);
-            });
-            for (const std::uint32_t i : leaf) {
-                bool& taken = done[octantOf(i)];
-                if (taken) continue;
-                const ShellSample sample = sampleAt(i);
-                const Vec3 p_F = place.inField(sample.position);
-                taken = finds.take(p_F, sample, field.sample(p_F, request.mode));
-            }
+            takeNearestOf(near.subspan(first, end - first));
             first = end;
         }
     }
@@ -413,12 +436,16 @@ struct Traversal {
     }
 
     void run() noexcept {
-        if (!plan.ordered && !request.prove) return sweep();
-        push(0, static_cast<std::uint32_t>(shell.roots().size()), -kInfinity);
+        if (!plan.ordered && !request.prove && !request.pauses) return sweep();
+        if (workspace.pause_.open)
+            resume();
+        else
+            push(0, static_cast<std::uint32_t>(shell.roots().size()), -kInfinity);
         while (!queue.empty()) {
             if (request.max_nodes > 0 && exceedsBudget(shell.nodes()[queue.next()])) {
                 finds.answer.budget_reached = true;
-                break;
+                if (!request.pauses) break;
+                if (finds.answer.nodes_visited > 0) return pause();
             }
             const QueryWorkspace::Entry entry = queue.pop();
             const shell::SphereNode& node = shell.nodes()[entry.node];
@@ -430,6 +457,20 @@ struct Traversal {
             push(node.first, node.count, entry.bound);
         }
         while (!queue.empty()) standIn(queue.pop());  // the budget ended
+    }
+
+    void pause() noexcept {
+        finds.answer.paused = true;
+        workspace.pause_ = {true, queue.size(), finds.answer, finds.deepest(), expected};
+    }
+
+    void resume() noexcept {
+        const QueryWorkspace::Pause& was = workspace.pause_;
+        finds.goOnFrom(was.answer, was.deepest);
+        finds.answer.paused = finds.answer.budget_reached = false;
+        queue.restore(was.waiting);
+        expected = was.expected;
+        workspace.pause_.open = false;
     }
 
     /// One point and the sphere of a node that is not looked into.
@@ -452,6 +493,7 @@ QueryAnswer queryContacts(const field::DistanceField& field, const Pose& X_WF, c
     Traversal traversal(place, plan, finds, workspace, known);
     if (traversal.known != nullptr) traversal.expect();
     traversal.run();
+    if (finds.answer.paused) return finds.answer;
     if (traversal.known != nullptr && finds.deepest() != kNoPoint) known->deepest = finds.deepest();
     if (request.refine) finds.refine();
     return finds.told(traversal.unproven_area);

@@ -62,10 +62,30 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Memory of a traversal, sized once for a tree.
+struct QueryAnswer {
+    bool found = false;             // a point with φ < search_below exists
+    double phi = 0.0;               // of the deepest or closest point if found, else search_below (a lower bound)
+    Vec3 closest_W = Vec3::Zero();  // that point
+    Vec3 normal_W = Vec3::Zero();   // unit gradient of φ there: out of the obstacle
+    Vec3 closest_F = Vec3::Zero();  // the same point in the field's frame
+    double lower_bound = 0.0;       // if asked to prove: no point of the shell has a true φ below this [m]
+    double quality = 1.0;           // share of the shell's area pruned with proof or evaluated point by point
+    int nodes_visited = 0;
+    int points_tested = 0;
+    int points_spared = 0;  // in leaves of which earlier readings told that they hold nothing that is asked for
+    int contacts = 0;       // points with φ < collect_below, those taken as one included
+    Wrench load;  // if asked for: Σ area · depth · (-normal) over the contacts, about the shell's origin, world axes
+    bool budget_reached = false;
+    bool paused = false;  // QueryRequest::pauses: nothing else but the counts says anything yet
+    bool manifold_full = false;
+};
+
+/// Memory of a traversal, sized once for a tree, and in it the traversal that waits for more budget.
 class QueryWorkspace {
 public:
     explicit QueryWorkspace(std::size_t nodes = 0) : heap_(nodes), near_(nodes * shell::SphereTree::kLeafGroups) {}
+    /// Forgets what waits.
+    void drop() noexcept { pause_.open = false; }
 
 private:
     struct Entry {
@@ -77,8 +97,17 @@ private:
         float phi;  // at the group's mean position
         std::uint32_t group;
     };
+    /// Nodes that wait are the first of heap_.
+    struct Pause {
+        bool open = false;
+        std::size_t waiting = 0;
+        QueryAnswer answer;
+        std::uint32_t deepest = 0;
+        double expected = 0.0;
+    };
     std::vector<Entry> heap_;
     std::vector<Near> near_;
+    Pause pause_;
     friend struct Traversal;
 };
 
@@ -90,6 +119,7 @@ struct QueryRequest {
     double every_below = std::numeric_limits<double>::infinity();
     double search_below = 0.0;  // the deepest or closest point is searched up to this φ [m]
     int max_nodes = 0;          // budget (the thesis's η_c, in nodes so that it is deterministic); 0 = none
+    bool pauses = false;        // where the budget ends the query waits in its workspace, for more (queryContacts)
     field::FieldMode mode = field::FieldMode::Trilinear;
     bool prove = false;     // also find QueryAnswer::lower_bound; costs about as much again
     bool spheres = false;   // a node left over by the budget also enters the manifold as a sphere
@@ -105,23 +135,6 @@ struct QueryRequest {
     bool refine = false;  // the deepest point is searched on the surface between the samples too
 };
 
-struct QueryAnswer {
-    bool found = false;             // a point with φ < search_below exists
-    double phi = 0.0;               // of the deepest or closest point if found, else search_below (a lower bound)
-    Vec3 closest_W = Vec3::Zero();  // that point
-    Vec3 normal_W = Vec3::Zero();   // unit gradient of φ there: out of the obstacle
-    Vec3 closest_F = Vec3::Zero();  // the same point in the field's frame
-    double lower_bound = 0.0;       // if asked to prove: no point of the shell has a true φ below this [m]
-    double quality = 1.0;           // share of the shell's area pruned with proof or evaluated point by point
-    int nodes_visited = 0;
-    int points_tested = 0;
-    int points_spared = 0;  // in leaves of which earlier readings told that they hold nothing that is asked for
-    int contacts = 0;       // points with φ < collect_below, those taken as one included
-    Wrench load;  // if asked for: Σ area · depth · (-normal) over the contacts, about the shell's origin, world axes
-    bool budget_reached = false;
-    bool manifold_full = false;
-};
-
 /// Collision, proximity and penalty in one traversal of a point-sphere tree against a distance field.
 ///   Source: Sagardia 2019, algorithm 3.1 (reconstructed), with φ = -V.
 ///   Best first by  b = φ_low(c) - R,  φ_low a rigorous lower bound of φ at the sphere's centre c and R its radius:
@@ -134,6 +147,9 @@ struct QueryAnswer {
 ///   below (the wrench of a constant pressure stays the same), and `quality` says which share of the area was proven or
 ///   evaluated. With `spheres` its sphere enters the manifold besides, with φ = b: what keeps the sphere out keeps its
 ///   points out.
+/// A query that `pauses` when its budget ends leaves no node out: the same call, with the contacts found so far in
+/// `manifold`, goes on where it stopped, by one node at least, until its answer is no longer `paused` and is that of a
+/// query without a budget. Its counts are those of one call each.
 /// With `known`, of this shell in this field, nodes are passed over that earlier looks have proven to hold nothing that
 /// is asked for (certificates.h): the answer is the same but for what it took, `nodes_visited` and points; with
 /// `every_node` for points alone. Appends to `manifold`. rt-safe; the number of steps is bounded by the

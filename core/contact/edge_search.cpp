@@ -63,14 +63,16 @@ struct EdgeSearch {
         return std::max(request.collect_below, std::min(request.search_below, answer.phi));
     }
 
-    void run() noexcept {
+    /// From the stretch `first` on, `most` of them; the first one that is left.
+    std::uint32_t run(std::uint32_t first, std::size_t most) noexcept {
         const auto stretches = edges.stretches();
         const auto& at = edges.centres();
         std::array<float, kStretches> x, y, z, bound;
         std::array<std::uint32_t, kStretches> which;
-        for (std::uint32_t next = 0; next < stretches.size();) {
+        std::uint32_t next = first;
+        while (next < stretches.size() && most > 0) {
             std::size_t count = 0;
-            for (; next < stretches.size() && count < kStretches; ++next) {
+            for (; next < stretches.size() && count < std::min(kStretches, most); ++next) {
                 if (isPassed(next)) continue;
                 x[count] = at.x(next, 1)[0];
                 y[count] = at.y(next, 1)[0];
@@ -79,6 +81,7 @@ struct EdgeSearch {
             }
             field.lowerBounds(S, {x.data(), count}, {y.data(), count}, {z.data(), count}, {bound.data(), count});
             answer.nodes_visited += static_cast<int>(count);
+            most -= count;
             for (std::size_t i = 0; i < count; ++i) {
                 const auto least = static_cast<double>(bound[i] - edges.radii()[which[i]]);
                 if (least < pruneAbove())
@@ -87,6 +90,7 @@ struct EdgeSearch {
                     known->note(which[i], least);
             }
         }
+        return next;
     }
 
     /// True if earlier looks have proven that a stretch holds nothing that is asked for.
@@ -203,17 +207,30 @@ struct EdgeSearch {
 }  // namespace
 
 QueryAnswer searchEdges(const field::DistanceField& field, const Pose& X_WF, const shell::EdgeCurves& edges,
-                        const Pose& X_WS, const QueryRequest& request, ContactManifold& manifold,
-                        Certificates* known) noexcept {
+                        const Pose& X_WS, const QueryRequest& request, ContactManifold& manifold, Certificates* known,
+                        EdgePause* pause) noexcept {
     const Pose X_FS = X_WF.inverse() * X_WS;
     EdgeSearch search(field, X_WF, edges, X_FS, X_WS, request, manifold, known);
     const bool smooth = request.mode == field::FieldMode::Trilinear || request.mode == field::FieldMode::Cubic;
     const bool sharp = field.finestCell() < field.cell();
-    if (smooth && sharp && request.max_nodes == 0) {
-        if (known != nullptr) known->begin(X_FS);
-        search.run();
-    }
     QueryAnswer& answer = search.answer;
+    if (smooth && sharp && (request.max_nodes == 0 || pause != nullptr)) {
+        if (known != nullptr) known->begin(X_FS);
+        std::uint32_t first = 0;
+        if (pause != nullptr && pause->open) {
+            first = pause->next;
+            answer = pause->answer;
+            answer.nodes_visited = answer.points_tested = answer.contacts = 0;
+            answer.paused = answer.budget_reached = pause->open = false;
+        }
+        const auto budget = static_cast<std::size_t>(std::max(1, request.max_nodes));
+        const std::uint32_t left = search.run(first, request.max_nodes == 0 ? edges.stretches().size() : budget);
+        if (left < edges.stretches().size()) {
+            answer.paused = answer.budget_reached = true;
+            *pause = {true, left, answer};
+            return answer;
+        }
+    }
     if (answer.found) {
         answer.closest_W = X_WF * answer.closest_F;
         if (answer.normal_W.squaredNorm() > 0.0) answer.normal_W.normalize();

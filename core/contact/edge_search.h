@@ -16,15 +16,22 @@ namespace passung::contact {
 /// tangents to φ(t) from both sides, whose crossing is looked at next (Kelley 1960), until it lies no deeper than
 /// kAlong · cell below what is known. Of a φ that is convex along the edge (a convex obstacle) nothing is missed; where
 /// it is not, what is smaller than a gap between stations may be.
+/// A search with a `pause` may have a budget: when that ends the same call goes on where it stopped, by one stretch at
+/// least, until nothing is left (QueryRequest::pauses).
 /// Appends to `manifold`; of `request` spheres, facing, load and refine mean nothing here. The search is left out under
-/// a budget, in modes whose values jump from voxel to voxel, and for fields of cells of one size: refined to no
+/// another budget, in modes whose values jump from voxel to voxel, and for fields of cells of one size: refined to no
 /// tolerance, they blunt the obstacle's edges by more than lies between two samples. `lower_bound` is φ*, as far as it
 /// was found. A stretch counts as a node,
 /// if it is not passed over: `known` is of these stretches in this field, as in queryContacts. rt-safe; the number of
 /// steps is bounded by the number of stations.
+struct EdgePause {
+    bool open = false;
+    std::uint32_t next = 0;  // stretch
+    QueryAnswer answer;
+};
 QueryAnswer searchEdges(const field::DistanceField& field, const Pose& X_WF, const shell::EdgeCurves& edges,
                         const Pose& X_WS, const QueryRequest& request, ContactManifold& manifold,
-                        Certificates* known = nullptr) noexcept;
+                        Certificates* known = nullptr, EdgePause* pause = nullptr) noexcept;
 inline constexpr double kAlong = 5e-4;
 inline constexpr int kEdgeSteps = 12;
 

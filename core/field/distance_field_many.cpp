@@ -39,6 +39,7 @@ struct DistanceField::Block {
     std::array<Lane<double>, 3> place;  // in largest bricks
     Lane<std::int32_t> cube;            // of the index
     Lane<std::int32_t> outside;
+    Lane<std::int32_t> brick;
     Lane<Head> head;
     Lane<float> low, step;
     Lane<float> slack, most, edge;  // for bounds
@@ -150,10 +151,17 @@ struct DistanceField::Block {
     template <bool kBounds>
     PASSUNG_INLINE void brickAll(const DistanceField& field, std::size_t count) {
         const float largest_brick = static_cast<float>(field.largest_cell_ * kBrickCells);
+        // Points of a surface lie in bricks far apart in memory: what is needed of many is fetched at once.
+        for (std::size_t i = 0; i < count; ++i)
+            __builtin_prefetch(&field.index_.brick[static_cast<std::size_t>(cube[i])]);
         for (std::size_t i = 0; i < count; ++i) {
             const std::int32_t found = field.index_.brick[static_cast<std::size_t>(cube[i])];
             outside[i] |= found < 0;
-            auto k = static_cast<std::size_t>(std::max(found, 0));
+            brick[i] = std::max(found, 0);
+            __builtin_prefetch(&field.heads_[static_cast<std::size_t>(brick[i])]);
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            auto k = static_cast<std::size_t>(brick[i]);
             head[i] = field.heads_[k];
             if (head[i].cells < 0.0f) {
                 while (field.bricks_[k].refined) {
@@ -177,6 +185,10 @@ struct DistanceField::Block {
 
     PASSUNG_INLINE void pairAll(const std::uint16_t* samples, std::size_t count) {
         constexpr std::size_t kRow = kBrickNodes, kSlab = kRow * kBrickNodes;
+        for (std::size_t i = 0; i < count; ++i) {
+            __builtin_prefetch(samples + node[i]);
+            __builtin_prefetch(samples + node[i] + kSlab);
+        }
         for (std::size_t i = 0; i < count; ++i) {
             const std::uint16_t* at = samples + node[i];
             std::memcpy(&pair[0][i], at, sizeof(std::uint32_t));

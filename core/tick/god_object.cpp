@@ -11,29 +11,6 @@ namespace passung::tick {
 
 namespace {
 
-/// Where a step begins, and what is known there.
-struct StepStart {
-    Pose X_WG;
-    double reach, clearance, clearance_bound;
-    std::size_t cuts;
-};
-
-StepStart startOf(const Proxy& proxy) noexcept {
-    return {proxy.X_WG, proxy.manifold_reach, proxy.clearance, proxy.clearance_bound, proxy.cuts};
-}
-
-/// From where a step ended in overlap back to where it began. Its contacts are those that `queryAround` left in the
-/// scratch memory, which now holds what the step met.
-void takeBack(const ProxyView& view, const StepStart& start) noexcept {
-    Proxy& proxy = view.proxy;
-    std::swap(proxy.manifold, view.memory.scratch);
-    proxy.X_WG = start.X_WG;
-    proxy.manifold_reach = start.reach;
-    proxy.clearance = start.clearance;
-    proxy.clearance_bound = start.clearance_bound;
-    proxy.cuts = start.cuts;
-}
-
 /// What the step `u` met and went more than `relieve` into, as contacts of the place where it began (cuts:
 /// god_object.h).
 void addCuts(const ProxyView& view, const Pose& X_met, const motion::Motion& u) noexcept {
@@ -76,29 +53,38 @@ struct StepBounds {
 
 /// Makes what is `allowed` of `wanted` within `bounds`.
 Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const motion::Surroundings& around,
-              AllowedMotion allowed, const StepBounds& bounds, LookBudget& budget) noexcept {
+              AllowedMotion allowed, const StepBounds& bounds, const ProxyWay& way, LookBudget& budget) noexcept {
     const TickModel& model = moving.model;
     Proxy& proxy = moving.proxy;
-    StepStart here = startOf(proxy);
+    SuspendedStep& step = proxy.step;
+    ProxyPlace here = placeOf(proxy);
     // A step that was suspended goes on with its cuts, as short as it was then.
     const int before = std::clamp(proxy.tried, 0, kCuts + kHalvings);
     double share = std::ldexp(1.0, -std::max(0, before - kCuts));
     for (int tried = before; tried <= kCuts + kHalvings; ++tried) {
-        const double length = longestPath(model, allowed.u);
-        if (length < kStill) return {.rubbing = allowed.rubbing, .at_rest = true};
-        const motion::Motion u = share * (length > bounds.known ? bounds.known / length : 1.0) * allowed.u;
-        if (!budget.allows()) {
+        if (!step.look.open) {
+            const double length = longestPath(model, allowed.u);
+            if (length < kStill) return {.rubbing = allowed.rubbing, .at_rest = true};
+            step.share = share * (length > bounds.known ? bounds.known / length : 1.0);
+            step.u = step.share * allowed.u;
+            step.halved = share < 1.0;
+            step.rubbing = allowed.rubbing;
+            step.X_WH = moving.hand.X_WH;
+            const bool bends = model.hasNodeBudget() && way.bentBy(step.u) > model.margins.relieve;
+            if (bends || !budget.allows()) {
+                proxy.tried = tried;
+                return {.rubbing = {}, .suspended = true};
+            }
+        }
+        budget.begin();
+        if (!lookAround(moving, moved(model, here.X_WG, step.u), bounds.reach, bounds.search)) {
             proxy.tried = tried;
             return {.rubbing = {}, .suspended = true};
         }
-        budget.begin();
-        queryAround(moving, moved(model, here.X_WG, u), bounds.reach, bounds.search);
+        const motion::Motion u = step.u;
         if (overlap(proxy) <= bounds.accepted) {
-            return {.u = u,
-                    .rubbing = allowed.rubbing,
-                    .made = true,
-                    .whole = share == 1.0 && length <= bounds.known,
-                    .halved = share < 1.0};
+            noteFollowed(proxy, step.X_WH, step.share);
+            return {.u = u, .rubbing = step.rubbing, .made = true, .whole = step.share == 1.0, .halved = step.halved};
         }
         moving.report.status |= kStepRejected;
         const Pose X_met = proxy.X_WG;
@@ -119,7 +105,11 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
 void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
                 Pushes& pushes, Report& report) noexcept {
     const MovingProxy moving{{model, proxy, memory, report}, hand, motion, pushes};
-    startProxy(moving);
+    if (!startProxy(moving)) {
+        report.status |= kSuspended | kIterationLimit;
+        noteLag(moving, false);
+        return;
+    }
     const ProxyMargins& margins = model.margins;
     const double longest = kLongestStep * model.finest_cell;
     const Pose X_before = proxy.X_WG;
@@ -128,16 +118,19 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
     ProxyWay way(model);
     const double between = std::max(margins.relieve, overlap(proxy));
     LookBudget budget(report);
+    const bool budgeted = model.hasNodeBudget();
     bool arrived = false, whole = false;  // whole: the last step was all that was allowed
     bool suspended = false;
     for (int sweep = 0; sweep <= kSweeps; ++sweep) {
         const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, hand.X_WH);
         const double path = longestPath(model, wanted);
         const double before = overlap(proxy);
-        arrived = path < kStill && before <= margins.relieve;
+        const bool goes_on = proxy.step.look.open;  // with what an earlier tick began
+        arrived = !goes_on && path < kStill && before <= margins.relieve;
         if (arrived) break;
         const double accepted = std::max(margins.accept, before + 0.1 * margins.keep);
-        if (sweep < kSweeps && proxy.clearance_bound > path) {
+        const bool free = proxy.clearance_bound > path;
+        if (sweep < kSweeps && free && !budgeted) {
             if (!way.goesOn(model, wanted, path)) break;
             const bool bent = way.bentBy(wanted) > margins.relieve;
             suspended = !budget.allows(bent ? 1 + kLooksBetween : 1);
@@ -153,12 +146,15 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
         const AllowedMotion allowed = allowedMotion(moving, wanted, around);
         const double step = longestPath(model, allowed.u);
         const double next_reach = std::clamp(kReachGrowth * std::min(step, path), reach, longest);
+        const double search = std::max(next_reach, free && budgeted ? 2.0 * path : path);
         // Contacts that held may be left behind by now, so that the way ends only where those of now leave nothing.
         const bool on_the_way = whole && before <= margins.relieve;
-        arrived = step < (on_the_way ? std::max(kEnough * model.finest_cell, kRest * way.length()) : kStill);
+        arrived =
+            !goes_on && step < (on_the_way ? std::max(kEnough * model.finest_cell, kRest * way.length()) : kStill);
         if (arrived && sweep == 0) motion.rubbing = allowed.rubbing;
         const double known = std::max(proxy.manifold_reach, proxy.clearance_bound);
-        const bool stops = !way.goesOn(model, (step > known ? known / step : 1.0) * allowed.u, step);
+        const motion::Motion next = (step > known ? known / step : 1.0) * allowed.u;
+        const bool stops = !goes_on && (budgeted ? way.bentBy(next) > margins.relieve : !way.goesOn(model, next, step));
         arrived = arrived || (on_the_way && stops);
         if (arrived || stops) break;
         if (sweep == kSweeps) break;
@@ -166,15 +162,15 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
         if (suspended) break;
         report.iterations = static_cast<std::uint32_t>(sweep + 1);
         const Pose X_here = proxy.X_WG;
-        const Step made = makeStep(
-            moving, wanted, around, allowed,
-            {.known = known, .accepted = accepted, .reach = next_reach, .search = std::max(next_reach, path)}, budget);
+        const Step made =
+            makeStep(moving, wanted, around, allowed,
+                     {.known = known, .accepted = accepted, .reach = next_reach, .search = search}, way, budget);
         arrived = made.at_rest;
         suspended = made.suspended;
         if (arrived && sweep == 0) motion.rubbing = made.rubbing;
         if (!made.made) break;
         way.add(made.u);
-        if (way.bentBy(motion::Motion::Zero()) > margins.relieve) {
+        if (!budgeted && way.bentBy(motion::Motion::Zero()) > margins.relieve) {
             suspended = !budget.allows(kLooksBetween);
             if (suspended || cutsCorner(moving, X_before, proxy.X_WG, between)) {
                 queryAround(moving, X_here, reach, reach);
@@ -183,7 +179,7 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
         }
         if (!made.halved) motion.rubbing = made.rubbing;
         repair = std::max(0.0, repair - std::max(0.0, before - overlap(proxy)));
-        whole = made.whole;
+        whole = made.whole && !goes_on;
         reach = next_reach;
     }
     if (!arrived) report.status |= kIterationLimit;
@@ -191,7 +187,8 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
         report.status |= kSuspended;
     else
         forgetCuts(proxy);
-    motion.last_motion = unconstrainedMotion(model, X_before, proxy.X_WG).norm();
+    noteLag(moving, arrived);
+    if (!suspended || way.length() > 0.0) motion.last_motion = unconstrainedMotion(model, X_before, proxy.X_WG).norm();
 }
 
 }  // namespace passung::tick

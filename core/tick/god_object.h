@@ -39,6 +39,11 @@ namespace passung::tick {
 /// proxy stays at the last pose that was accepted, with the cuts so far, and the next tick goes on from there
 /// (kSuspended).
 ///
+/// Budget of nodes (field_look.h). Under one a look may take several ticks; until it has ended the proxy stays at the
+/// last pose that was accepted, so that what it is held by is never what nobody looked at. Then the step is made, or
+/// cut, as if it had ended at once, and from there on it follows the hand of now. A way of several steps in one tick
+/// does not bend: what looks between would prove, the next tick's step proves by its own.
+///
 /// Repair. A start in overlap is no special case: what is in overlap has to come to φ ≥ -max(keep, d - kRepair · s), d
 /// the deepest overlap when the tick begins. The deepest points come out first, at kRepair · s a tick, so that the
 /// coupling's force rises no faster than K times that; those between are not asked yet, because far inside what is
@@ -71,9 +76,16 @@ inline constexpr StageOf kProxySweep{
     {.name = "proxy sweep",
      .parameters = "contact.method, stiffness_N_per_m, rotational_stiffness, mode, budget_nodes, two_way; friction",
      .cost = "at most 12 000 units of work a tick, about 0.5 ms; what is left goes on in the next tick",
-     .needs = [](const TickModel& model) { return model.hasFieldProxyOf(scene::ContactMethod::GodObject); },
+     .needs =
+         [](const TickModel& model) {
+             return model.hasFieldProxyOf(scene::ContactMethod::GodObject) || model.hasNodeBudget();
+         },
      .reason =
          [](const TickModel& model) {
+             if (model.contact.method == scene::ContactMethod::GodObjectHeuristic)
+                 return "contact.budget_nodes with god_object_heuristic: the proxy goes the way of god_object, which "
+                        "can "
+                        "stop in a look and go on in the next tick";
              return model.contact.two_way
                         ? "contact.method is god_object: the proxy follows the hand as far as all contacts within "
                           "reach let it; contact.two_way: of the held part's points and of the obstacles' points"

@@ -73,7 +73,7 @@ void relieve(const ProxyView& view, double reach, double left, LookBudget& budge
 void correctProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion,
                   QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
     const MovingProxy moving{{model, proxy, memory, report}, hand, motion, pushes};
-    startProxy(moving);
+    if (!startProxy(moving)) return;
     const double left = leftOf(model, overlap(proxy));
     for (int i = 0; i < kCorrections && overlap(proxy) > std::max(model.margins.accept, left); ++i) {
         const Pose X_before = proxy.X_WG;
@@ -158,11 +158,13 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
             good = !bent || (!suspended && !cutsCorner(moving, X_before, proxy.X_WG, between));
         }
         arrived = good && whole;  // the whole constrained motion was made
+        if (good) noteFollowed(proxy, hand.X_WH, std::min(1.0, known / step_path) * std::ldexp(1.0, -half));
         if (!good) queryAround(moving, X_here, next_reach, next_reach);
         if (suspended) proxy.tried = half;
         if (!good || whole) break;
         reach = next_reach;
     }
+    noteLag(moving, arrived);
     if (!arrived) report.status |= kIterationLimit;
     if (suspended) report.status |= kSuspended;
     motion.last_motion = unconstrainedMotion(model, X_before, proxy.X_WG).norm();

@@ -34,9 +34,8 @@ namespace passung::tick {
 ///    checked by a query. What the linearisation missed (around a rim) is pushed out by the least motion that the
 ///    contacts found there ask for; if the overlap is still not acceptable the step is halved; and all is repeated from
 ///    the new pose up to kSubSteps times; next to a surface that is about kSubSteps / 2 cells per tick, and a faster
-///    hand leaves the proxy behind (kIterationLimit). Round a bend it goes on in the next tick (proxy_way.h). Where a
-///    budget ends a query early, spheres stand for the points that nobody looked at (contact_query.h): they may leave
-///    and slide but not go deeper, so that the proxy stops too early rather than pass.
+///    hand leaves the proxy behind (kIterationLimit). Round a bend it goes on in the next tick (proxy_way.h). Under a
+///    budget of nodes, a look of which may take several ticks, the sweep of god_object.h stands for #2 to #4.
 ///
 /// #5 low-pass of the proxy, a stage of its own: filterProxy in proxy.h.
 ///
@@ -68,9 +67,12 @@ void correctProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, 
 inline constexpr StageOf kProxyCorrection{
     correctProxy,
     {.name = "proxy correction",
-     .parameters = "contact.method, mode, budget_nodes, two_way",
+     .parameters = "contact.method, mode, two_way",
      .cost = "nothing, or a few queries of each obstacle; bound: kCorrections",
-     .needs = [](const TickModel& model) { return model.hasFieldProxyOf(scene::ContactMethod::GodObjectHeuristic); },
+     .needs =
+         [](const TickModel& model) {
+             return model.hasFieldProxyOf(scene::ContactMethod::GodObjectHeuristic) && !model.hasNodeBudget();
+         },
      .reason =
          [](const TickModel& model) {
              return model.contact.two_way
@@ -87,9 +89,12 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
 inline constexpr StageOf kProxyMotion{
     moveProxy,
     {.name = "proxy motion",
-     .parameters = "contact.stiffness_N_per_m, rotational_stiffness, mode, budget_nodes, two_way; friction",
+     .parameters = "contact.stiffness_N_per_m, rotational_stiffness, mode, two_way; friction",
      .cost = "at most 12 000 units of work a tick, about 0.5 ms; what is left goes on in the next tick",
-     .needs = [](const TickModel& model) { return model.hasFieldProxyOf(scene::ContactMethod::GodObjectHeuristic); },
+     .needs =
+         [](const TickModel& model) {
+             return model.hasFieldProxyOf(scene::ContactMethod::GodObjectHeuristic) && !model.hasNodeBudget();
+         },
      .reason =
          [](const TickModel&) { return "steps #3 and #4: the proxy follows the hand as far as the contacts let it"; }}};
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/tick/contact_energy.h"
+#include "core/tick/field_look.h"
 #include "core/tick/obstacle_query.h"
 
 namespace passung::tick {
@@ -84,10 +85,12 @@ void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double s
                                   .spheres = true,
                                   .facing = model.contact.two_way,
                                   .edges = true};
-    // What a budget leaves is kept out by spheres; every point that was looked at has to hold it besides.
-    if (model.contact.budget_nodes == 0) request.every_below = model.margins.accept;
-    contact::QueryAnswer answer =
-        queryObstacles(model, X_WG, request, memory.workspace, memory.scratch, {}, memory.near_proxy);
+    // What a budget leaves (tick_query.h) is kept out by spheres; every point that was looked at has to hold it
+    // besides, and what that is depends on what is known.
+    const bool whole = model.contact.budget_nodes == 0;
+    if (whole) request.every_below = model.margins.accept;
+    contact::QueryAnswer answer = queryObstacles(model, X_WG, request, memory.workspace, memory.scratch, {},
+                                                 whole ? std::span(memory.near_proxy) : std::span<PairCertificates>());
     account(answer, report);
     std::swap(proxy.manifold, memory.scratch);
     proxy.cuts = 0;
@@ -103,6 +106,40 @@ void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double s
     answer = queryObstacles(model, X_WG, request, memory.workspace, memory.scratch);
     account(answer, report);
     proxy.clearance_bound = std::max(reach, answer.lower_bound);
+}
+
+bool lookAround(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept {
+    const auto& [model, proxy, memory, report] = view;
+    if (!model.hasNodeBudget()) {
+        queryAround(view, X_WG, reach, search);
+        return true;
+    }
+    FieldLook& look = proxy.step.look;
+    if (!look.open) beginLook(look, X_WG, reach, search);
+    if (!goOnLooking(model, look, memory.near_proxy, report)) return false;
+    std::swap(memory.scratch, proxy.manifold);
+    std::swap(proxy.manifold, look.found);
+    proxy.cuts = 0;
+    proxy.tried = 0;
+    proxy.X_WG = look.X_WG;
+    proxy.manifold_reach = look.reach;
+    proxy.clearance = look.nearest;
+    proxy.clearance_bound = look.clearance_bound;
+    return true;
+}
+
+ProxyPlace placeOf(const Proxy& proxy) noexcept {
+    return {proxy.X_WG, proxy.manifold_reach, proxy.clearance, proxy.clearance_bound, proxy.cuts};
+}
+
+void takeBack(const ProxyView& view, const ProxyPlace& place) noexcept {
+    Proxy& proxy = view.proxy;
+    std::swap(proxy.manifold, view.memory.scratch);
+    proxy.X_WG = place.X_WG;
+    proxy.manifold_reach = place.reach;
+    proxy.clearance = place.clearance;
+    proxy.clearance_bound = place.clearance_bound;
+    proxy.cuts = place.cuts;
 }
 
 bool overlapsBetween(const ProxyView& view, const Pose& X_from, const Pose& X_to, double share,
@@ -122,15 +159,19 @@ void surveyContacts(const ProxyView& view, const Pose& X_WG) noexcept {
     queryAround(view, X_WG, reach, reach);
 }
 
-void startProxy(const MovingProxy& moving) noexcept {
+bool startProxy(const MovingProxy& moving) noexcept {
     Proxy& proxy = moving.proxy;
     if (moving.hand.relocated) {
         proxy.X_WG = moving.hand.X_WH;
         proxy.manifold_reach = -1.0;
+        proxy.step.look.open = false;
+        proxy.step.X_WH_followed = moving.hand.X_WH;
         moving.motion.rubbing = {};
     }
-    if (proxy.manifold_reach < 0.0) surveyContacts(moving, proxy.X_WG);
     clearPushes(moving.pushes);
+    if (!(proxy.manifold_reach < 0.0)) return true;
+    const double reach = kLongestStep * moving.model.finest_cell;
+    return lookAround(moving, proxy.X_WG, reach, reach);
 }
 
 double nextReach(const TickModel& model, double last_motion) noexcept {
@@ -149,6 +190,17 @@ bool arriveFreely(const MovingProxy& moving, double path, double reach, double a
     moving.report.status |= kStepRejected;
     queryAround(moving, X_here, reach, reach);
     return false;
+}
+
+void noteFollowed(Proxy& proxy, const Pose& X_WH, double share) noexcept {
+    Pose& followed = proxy.step.X_WH_followed;
+    followed = share == 1.0 ? X_WH : Pose{followed.q.slerp(share, X_WH.q), followed.p + share * (X_WH.p - followed.p)};
+}
+
+void noteLag(const MovingProxy& moving, bool arrived) noexcept {
+    Pose& followed = moving.proxy.step.X_WH_followed;
+    if (arrived) followed = moving.hand.X_WH;
+    moving.proxy.lag = longestPath(moving.model, unconstrainedMotion(moving.model, followed, moving.hand.X_WH));
 }
 
 motion::Surroundings surroundings(const TickModel& model, const Proxy& proxy) noexcept {
@@ -189,14 +241,17 @@ void filterProxy(const TickModel& model, const HandSample& hand, ProxyFilter& fi
     if (hand.relocated) filter.has_last_proxy = false;  // the proxy was set to the hand
     const double alpha = 1.0 - std::exp(-2.0 * std::numbers::pi * model.contact.proxy_filter * kTickSeconds);
     const bool in_contact = proxy.clearance < model.margins.keep;
-    if (in_contact && filter.has_last_proxy) {
+    // A step that is still being looked at begins where the proxy is.
+    if (in_contact && filter.has_last_proxy && !proxy.step.look.open) {
         const ProxyView view{model, proxy, memory, report};
-        const Pose X_target = proxy.X_WG;
-        const motion::Motion u = unconstrainedMotion(model, filter.X_WG_last, X_target);
+        const motion::Motion u = unconstrainedMotion(model, filter.X_WG_last, proxy.X_WG);
         const double reach = proxy.manifold_reach;
         const double accepted = std::max(model.margins.accept, overlap(proxy));
-        queryAround(view, moved(model, filter.X_WG_last, alpha * u), reach, reach);
-        if (overlap(proxy) > accepted) queryAround(view, X_target, reach, reach);
+        const ProxyPlace target = placeOf(proxy);
+        if (!lookAround(view, moved(model, filter.X_WG_last, alpha * u), reach, reach))
+            proxy.step.look.open = false;
+        else if (overlap(proxy) > accepted)
+            takeBack(view, target);
     }
     filter.X_WG_last = proxy.X_WG;
     filter.has_last_proxy = true;
@@ -204,6 +259,7 @@ void filterProxy(const TickModel& model, const HandSample& hand, ProxyFilter& fi
 
 void describeProxy(const TickModel&, const Proxy& proxy, ContactRecord& record) noexcept {
     record.proxy_depth = overlap(proxy);
+    record.proxy_lag = proxy.lag;
     const contact::ContactPoint* const end = proxy.manifold.end() - std::min(proxy.cuts, proxy.manifold.size());
     record.contacts = static_cast<std::uint32_t>(std::count_if(proxy.manifold.begin(), end, isInside));
 }

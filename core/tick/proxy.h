@@ -55,6 +55,22 @@ bool isInside(const contact::ContactPoint& contact) noexcept;
 /// overlaps there, the scratch memory then holds what the manifold held before.
 void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept;
 
+/// The same, under a budget of nodes perhaps in several ticks: begins a look, or goes on with the one that is open,
+/// whatever is asked. False: it has not ended, and the proxy and what is known of it stay. rt-safe.
+bool lookAround(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept;
+
+/// A place of the proxy, and what is known there but for the contacts.
+struct ProxyPlace {
+    Pose X_WG;
+    double reach, clearance, clearance_bound;
+    std::size_t cuts;
+};
+ProxyPlace placeOf(const Proxy& proxy) noexcept;
+
+/// From where a look found overlap back to `place`, where the proxy was before it. Its contacts are those that the look
+/// left in the scratch memory, which now holds what was met. rt-safe.
+void takeBack(const ProxyView& view, const ProxyPlace& place) noexcept;
+
 /// Work that a tick may still do on looks at fields, and whether it is enough for `looks` more like the last one.
 /// Without any so far it always is: every tick gets on. rt-safe.
 class LookBudget {
@@ -86,8 +102,8 @@ void surveyContacts(const ProxyView& view, const Pose& X_WG) noexcept;
 
 /// Where the input guard believes the device to be elsewhere than it can have come from (a false first reading), the
 /// proxy is set to the hand and its past forgotten: a spring from the old place would throw the hand across the room.
-/// Looks around if nothing is known.
-void startProxy(const MovingProxy& moving) noexcept;
+/// Looks around if nothing is known. False: still nothing is (lookAround).
+bool startProxy(const MovingProxy& moving) noexcept;
 
 /// How far around the proxy to look next, from how far it went in the last tick [m].
 double nextReach(const TickModel& model, double last_motion) noexcept;
@@ -95,6 +111,12 @@ double nextReach(const TickModel& model, double last_motion) noexcept;
 /// Takes the proxy straight to the hand, `path` away, through room that is proven to be free. False, and it stays, if
 /// it would overlap there by more than `accepted`.
 bool arriveFreely(const MovingProxy& moving, double path, double reach, double accepted) noexcept;
+
+/// A step was made: `share` of all that a hand at `X_WH` asked for.
+void noteFollowed(Proxy& proxy, const Pose& X_WH, double share) noexcept;
+
+/// The tick's motion has ended; `arrived`: nothing is left of it. Notes what it lags behind.
+void noteLag(const MovingProxy& moving, bool arrived) noexcept;
 
 motion::Surroundings surroundings(const TickModel& model, const Proxy& proxy) noexcept;
 
@@ -124,7 +146,8 @@ struct ProxyFilter {
 };
 
 /// Low-pass (only if the scene names its corner f_c), while in contact:
-///   G_k = G_{k-1} ⊕ α (G* ⊖ G_{k-1}),  α = 1 - exp(-2π f_c T); dropped for a tick where it would cost overlap.
+///   G_k = G_{k-1} ⊕ α (G* ⊖ G_{k-1}),  α = 1 - exp(-2π f_c T); dropped for a tick where it would cost overlap, or
+/// more nodes than a budget leaves.
 void filterProxy(const TickModel& model, const HandSample& hand, ProxyFilter& filter, Proxy& proxy, QueryMemory& memory,
                  Report& report) noexcept;
 inline constexpr StageOf kProxyFilter{
@@ -139,7 +162,7 @@ inline constexpr StageOf kProxyFilter{
          },
      .reason = [](const TickModel&) { return "contact.proxy_filter_hz is set: a low-pass of the proxy in contact"; }}};
 
-/// The depth and the number of contacts, for the record.
+/// The depth, the number of contacts and the lag, for the record.
 void describeProxy(const TickModel& model, const Proxy& proxy, ContactRecord& record) noexcept;
 inline constexpr StageOf kProxyRecord{
     describeProxy,
@@ -147,7 +170,7 @@ inline constexpr StageOf kProxyRecord{
      .parameters = "",
      .cost = "a little for each contact",
      .needs = [](const TickModel& model) { return model.hasFieldProxy(); },
-     .reason = [](const TickModel&) { return "overlap and contacts at the proxy, for the record"; }}};
+     .reason = [](const TickModel&) { return "overlap and contacts at the proxy, and its lag, for the record"; }}};
 
 /// Depth of the held part at the hand's pose: only for the record, an extra query.
 void measureHandDepth(const TickModel& model, const HandSample& hand, QueryMemory& memory, HandDepth& depth,

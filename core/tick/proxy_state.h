@@ -1,13 +1,45 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "core/contact/certificates.h"
 #include "core/contact/contact_query.h"
+#include "core/contact/edge_search.h"
+#include "core/motion/active_set.h"
 #include "core/motion/friction.h"
 
 namespace passung::tick {
+
+/// A look from a pose under a budget of nodes, and how far it has come (field_look.h).
+struct FieldLook {
+    bool open = false;  // it goes on in the next tick
+    Pose X_WG;
+    double reach = 0.0, search = 0.0;
+    // When it has ended
+    contact::ContactManifold found;
+    double nearest = 0.0;          // least φ of the points that were looked at, as interpolated [m]
+    double clearance_bound = 0.0;  // Proxy::clearance_bound
+    // Where it stands
+    double clearance = 0.0;
+    bool proves = false, back = false, along_edges = false;
+    std::uint32_t obstacle = 0;
+    std::size_t first_of_obstacle = 0, first_of_way = 0;  // in what was found
+    contact::QueryWorkspace workspace;
+    contact::EdgePause edges;
+};
+
+/// A step whose end is still being looked at, and where the hand is that it follows.
+struct SuspendedStep {
+    FieldLook look;
+    motion::Motion u = motion::Motion::Zero();  // from Proxy::X_WG
+    double share = 0.0;                         // of what was allowed
+    bool halved = false;
+    motion::FrictionPatches rubbing;
+    Pose X_WH;           // the hand when it began
+    Pose X_WH_followed;  // as far as steps that were made followed it
+};
 
 /// The held part where it is rendered, and what is known around it. Handed on among the stages of one method of
 /// contact, of which a scene has one: free hand; contacts at the hand; penalty tool; proxy sweep, or correction and
@@ -22,6 +54,8 @@ struct Proxy {
     // Of a step that was suspended: contacts at the end of the manifold that it was cut by, and how often it was tried.
     std::size_t cuts = 0;
     int tried = 0;
+    double lag = std::numeric_limits<double>::quiet_NaN();  // ContactRecord::proxy_lag
+    SuspendedStep step;                                     // under a budget of nodes
 };
 
 /// Where contacts held the proxy's last motion: each is a point of the held part or of an obstacle.

@@ -39,6 +39,9 @@ struct ContactRecord {
     // No point of the held part is nearer to an obstacle, ≥ 0 [m]; NaN where nothing proves it.
     double proxy_gap = std::numeric_limits<double>::quiet_NaN();
     std::uint32_t contacts = 0;
+    // No point of the hand has moved farther since it was where the proxy has followed it to, ≥ 0 [m]; NaN where
+    // nothing says it.
+    double proxy_lag = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Owner: contacts at the hand, or hand depth.

@@ -68,6 +68,10 @@ struct TickModel {
     bool hasFieldProxyOf(scene::ContactMethod method) const noexcept {
         return hasFieldProxy() && contact.method == method;
     }
+    /// Its looks may stop and go on in the next tick (field_look.h).
+    bool hasNodeBudget() const noexcept {
+        return hasFieldProxy() && contact.method != scene::ContactMethod::Penalty && contact.budget_nodes > 0;
+    }
 };
 
 /// What the scene fixes, and those of AllStages that it needs. `scene` must outlive the result.

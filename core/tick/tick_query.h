@@ -14,7 +14,8 @@ struct QueryReading {
     Wrench wrench;       // area-weighted penalty on the held part about its origin, world axes
 };
 
-/// The query of a tick, by the tick's own stages, to measure its errors and its time. Memory is sized once.
+/// The query of a tick, by the tick's own stages, to measure its errors and its time; under a budget of nodes as far as
+/// that lets it come, though a god object's look goes on in the next tick. Memory is sized once.
 class TickQuery {
 public:
     /// `area_stiffness`: κ of the wrench [N/m³]. @pre `scene` has Geometry::Field; its parts outlive this

@@ -46,11 +46,14 @@ void addQueryMemory(const TickModel& model, Proxy& proxy, QueryMemory& memory) {
     proxy.manifold = contact::ContactManifold(capacity);
     memory.scratch = contact::ContactManifold(capacity);
     memory.workspace = contact::QueryWorkspace(nodes);
-    // Of budgets not: what they leave depends on what is looked at first.
-    if (model.hasFieldProxy() && model.contact.budget_nodes == 0)
-        memory.near_proxy = memory.near_hand = certificatesOf(model);
-    else if (model.contact.budget_nodes == 0)
-        memory.near_hand = certificatesOf(model);
+    if (model.hasNodeBudget()) {
+        proxy.step.look.found = contact::ContactManifold(capacity);
+        proxy.step.look.workspace = contact::QueryWorkspace(nodes);
+    }
+    // Of answers from a part of a look not: what that leaves depends on what is looked at first.
+    const bool partly = model.contact.budget_nodes > 0;
+    if (model.hasNodeBudget() || (model.hasFieldProxy() && !partly)) memory.near_proxy = certificatesOf(model);
+    if (!partly) memory.near_hand = certificatesOf(model);
 }
 
 }  // namespace
@@ -58,7 +61,7 @@ void addQueryMemory(const TickModel& model, Proxy& proxy, QueryMemory& memory) {
 TickState makeState(const TickModel& model) {
     TickState state;
     state.engaged = model.start_gate.hold_ticks <= 0;
-    state.X_WG = model.X_WG_start;
+    state.X_WG = state.step.X_WH_followed = model.X_WG_start;
     state.pairs.resize(model.obstacles.size() + 1);
     state.pushes.resize(state.pairs.size());
     state.last_shares.resize(state.pairs.size());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tests/hard/figures.h"
 #include "tests/hard/found.h"
@@ -159,11 +160,13 @@ Result<FoundMeasured> budgets(scene::ContactMethod method, bool) {
     for (const int nodes : {1000, 100}) {
         const auto run = runWith(nodes);
         if (!run) return run.errors();
-        double above = 0.0, largest = 0.0;
+        double above = 0.0, largest = 0.0, lag = 0.0;
         for (std::size_t i = 0; i < run->ticks.size(); ++i) {
             const double force = springOf(*run, i).norm();
             largest = std::max(largest, force);
-            above = std::max(above, force - kFactor * springOf(*unlimited, i).norm() - kSlack);
+            const double lags = run->spec.contact.stiffness * run->ticks[i].lag;
+            above = std::max(above, force - kFactor * springOf(*unlimited, i).norm() - lags - kSlack);
+            lag = std::max(lag, run->ticks[i].lag);
             result.us.push_back(static_cast<double>(run->ticks[i].us));
         }
         const std::size_t end = run->ticks.size() - 1;
@@ -172,9 +175,11 @@ Result<FoundMeasured> budgets(scene::ContactMethod method, bool) {
         const std::string of = fmt::format("{} nodes: ", nodes);
         result.figures.push_back({of + "largest force, of " + fmt::format("{:.2f} N without a budget", most), "N",
                                   largest, std::max(kFactor * most + kSlack, 0.0), false, was});
-        result.figures.push_back({of + "force above 1.25 times the unlimited one and 0.05 N, no lag being recorded",
-                                  "N", std::max(above, 0.0), 0.0, false, was});
-        result.figures.push_back({of + "force off the unlimited one after the hand rested", "%", 100.0 * rest, 1.0});
+        result.figures.push_back({of + "force above 1.25 times the unlimited one, stiffness times lag and 0.05 N", "N",
+                                  std::max(above, 0.0), 0.0, true, was});
+        result.figures.push_back({of + "lag", "um", kUm * lag, std::numeric_limits<double>::infinity()});
+        result.figures.push_back(
+            {of + "force off the unlimited one after the hand rested", "%", 100.0 * rest, 1.0, true});
         result.figures.push_back(
             {of + "deepest overlap", "um", kUm * deepestOverlap(*run), kUm * run->spec.contact.tolerance, true});
     }

@@ -55,6 +55,7 @@ Result<Run> runScene(const scene::SceneSpec& spec, const Drive& drive, std::int6
                              .commanded = output.F_D_B,
                              .energy = f.energy,
                              .proxy_depth = f.proxy_depth,
+                             .lag = f.proxy_lag,
                              .status = f.status,
                              .contacts = f.contacts,
                              .iterations = f.iterations,

@@ -19,6 +19,7 @@ struct Tick {
     Wrench commanded;    // the same to the device, about its handle's origin, in its base's axes
     double energy = 0.0;
     double proxy_depth = 0.0;  // as the program says [m]
+    double lag = 0.0;          // likewise; NaN: it does not [m]
     std::uint32_t status = 0, contacts = 0, iterations = 0, nodes = 0, rows = 0, turns = 0;
     float us = 0.0f;  // processor time of the tick
 };

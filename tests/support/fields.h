@@ -18,7 +18,8 @@ namespace passung::test {
 template <class T>
 inline constexpr bool kIsMemory =
     std::is_same_v<T, contact::QueryWorkspace> || std::is_same_v<T, contact::Certificates> ||
-    std::is_same_v<T, tick::ClosedFormMemory> || std::is_same_v<T, std::optional<surface::SurfaceProxy>>;
+    std::is_same_v<T, tick::ClosedFormMemory> || std::is_same_v<T, tick::FieldLook> ||
+    std::is_same_v<T, std::optional<surface::SurfaceProxy>>;
 
 /// Converts to whatever a field is.
 struct Anything {

@@ -23,7 +23,7 @@ constexpr const char* kHeader =
     "tick,t_s,device_x_m,device_y_m,device_z_m,device_qw,device_qx,device_qy,device_qz,proxy_x_m,proxy_y_m,proxy_z_m,"
     "proxy_qw,proxy_qx,proxy_qy,proxy_qz,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,proxy_depth_"
     "m,"
-    "device_depth_m,contacts,quality,status,iterations,tick_us,proxy_gap_m,suspended,tick_cpu_us\n";
+    "device_depth_m,contacts,quality,status,iterations,tick_us,proxy_gap_m,suspended,tick_cpu_us,proxy_lag_m\n";
 
 /// How long a tick took [µs].
 struct TickTime {
@@ -41,8 +41,9 @@ void writeRow(fmt::memory_buffer& text, std::int64_t tick, const tick::TickOutpu
     for (const Vec3& v : {f.F_H_W.force, f.F_H_W.torque}) fmt::format_to(out, ",{},{},{}", v.x(), v.y(), v.z());
     fmt::format_to(out, ",{},{},{},{},{},{},{:.3f}", f.proxy_depth, f.hand_depth, f.contacts, f.quality, f.status,
                    f.iterations, us.wall);
-    const std::string gap = std::isnan(f.proxy_gap) ? "NA" : fmt::format("{}", f.proxy_gap);
-    fmt::format_to(out, ",{},{},{:.3f}\n", gap, (f.status & kSuspended) != 0 ? 1 : 0, us.processor);
+    const auto known = [](double value) { return std::isnan(value) ? "NA" : fmt::format("{}", value); };
+    fmt::format_to(out, ",{},{},{:.3f},{}\n", known(f.proxy_gap), (f.status & kSuspended) != 0 ? 1 : 0, us.processor,
+                   known(f.proxy_lag));
 }
 
 }  // namespace

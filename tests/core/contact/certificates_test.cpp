@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <vector>
 
 #include "core/base/random.h"
 #include "core/contact/contact_query.h"
@@ -209,6 +210,62 @@ TEST(Certificates, KnowNothingWithoutMemoryOrOfLooksLongAgo) {
     for (std::uint32_t i = 1; i <= contact::Certificates::kPoses; ++i)
         some.begin({Quat::Identity(), Vec3(1e-6 * i, 0, 0)});
     EXPECT_FALSE(some.above(0, Vec3::Zero(), 1e-3, 0.0));
+}
+
+TEST(PausedLook, FindsInSeveralCallsWhatOneFindsInOne) {
+    // Truth: invariant, bit for bit but for the order of contacts: of points and of edges, with certificates and
+    // without, by budgets down to one node.
+    const scene::Part plate = build(shape::BorePlate{0.03, 0.03, 0.02, 0.0202, 0.02, 0.001});
+    const scene::Part peg = build(shape::Peg{0.02, 0.024, 0.001});
+    contact::QueryWorkspace whole_space(peg.shell->nodes().size()), workspace(peg.shell->nodes().size());
+    const std::size_t most = peg.shell->points().size() + peg.edges->stations().size();
+    contact::Certificates nodes(peg.shell->nodes().size(), kTolerance);
+    contact::Certificates stretches(peg.edges->stretches().size(), kTolerance);
+    const auto sorted = [](const contact::ContactManifold& manifold) {
+        std::vector<contact::ContactPoint> all(manifold.begin(), manifold.end());
+        std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+            return std::lexicographical_compare(a.position.data(), a.position.data() + 3, b.position.data(),
+                                                b.position.data() + 3);
+        });
+        return all;
+    };
+    Wander wander;
+    int calls = 0, contacts = 0;
+    for (int i = 0; i < 400; ++i) {
+        const Pose X_WS = wander.next();
+        contact::QueryRequest request{.collect_below = 40e-6, .search_below = i % 2 == 0 ? 100e-6 : 40e-6};
+        Look whole{{}, contact::ContactManifold(most)}, paused{{}, contact::ContactManifold(most)};
+        whole.answer =
+            contact::queryContacts(*plate.field, Pose{}, *peg.shell, X_WS, request, whole_space, whole.manifold);
+        const contact::QueryAnswer edges =
+            contact::searchEdges(*plate.field, Pose{}, *peg.edges, X_WS, request, whole.manifold);
+        request.max_nodes = std::array{1, 7, 60, 500}[static_cast<std::size_t>(i) % 4];
+        request.pauses = true;
+        const bool known = i % 8 < 4;
+        do {
+            paused.answer = contact::queryContacts(*plate.field, Pose{}, *peg.shell, X_WS, request, workspace,
+                                                   paused.manifold, known ? &nodes : nullptr);
+            EXPECT_LE(paused.answer.nodes_visited, request.max_nodes + 8);
+            ++calls;
+        } while (paused.answer.paused);
+        contact::EdgePause pause;
+        contact::QueryAnswer paused_edges;
+        do {
+            paused_edges = contact::searchEdges(*plate.field, Pose{}, *peg.edges, X_WS, request, paused.manifold,
+                                                known ? &stretches : nullptr, &pause);
+            EXPECT_LE(paused_edges.nodes_visited, request.max_nodes);
+        } while (paused_edges.paused);
+        ASSERT_EQ(paused.answer.phi, whole.answer.phi) << i;
+        ASSERT_EQ(paused.answer.found, whole.answer.found) << i;
+        ASSERT_EQ(paused_edges.phi, edges.phi) << i;
+        const auto a = sorted(paused.manifold), b = sorted(whole.manifold);
+        ASSERT_EQ(a.size(), b.size()) << i;
+        for (std::size_t k = 0; k < a.size(); ++k)
+            ASSERT_TRUE(a[k].position == b[k].position && a[k].gradient == b[k].gradient && a[k].phi == b[k].phi) << i;
+        contacts += static_cast<int>(a.size());
+    }
+    EXPECT_GT(calls, 4000);
+    EXPECT_GT(contacts, 4000);
 }
 
 }  // namespace

@@ -75,13 +75,14 @@ std::vector<scene::SceneSpec> scenesOfAllStages() {
     god_object.contact.two_way = true;
     auto heuristic = boxOverPlate(GodObjectHeuristic);
     heuristic.contact.proxy_filter = 50.0;
-    heuristic.contact.budget_nodes = 60;
+    auto budget = heuristic;
+    budget.contact.budget_nodes = 60;
     auto closed_form = boxOverPlate(GodObject);
     closed_form.contact.geometry = scene::Geometry::ClosedForm;
     closed_form.contact.proxy_filter = 50.0;
     auto surface = boxOverPlate(GodObject);
     surface.contact.geometry = scene::Geometry::Surface;
-    return {free, penalty, tool, god_object, heuristic, closed_form, surface};
+    return {free, penalty, tool, god_object, heuristic, budget, closed_form, surface};
 }
 
 /// A hand that presses, slides and turns; samples are lost, lie, and lie for long.
@@ -106,7 +107,7 @@ struct Checker {
     /// read: the same bits in what it writes, no other bits in what it does not.
     template <const auto& stage>
     void check(const TickState& state, const TickFrame& frame) {
-        int& count = times[stage.card.name];
+        int& count = times[std::string(stage.card.name) + (model.hasNodeBudget() ? " under a budget" : "")];
         if (count >= kTimes) return;
         ++count;
         state_a = state_b = state;

@@ -11,11 +11,11 @@ namespace passung::test {
 namespace {
 
 const std::vector<std::string> kColumns = {
-    "tick",        "t_s",           "device_x_m",     "device_y_m", "device_z_m", "device_qw",   "device_qx",
-    "device_qy",   "device_qz",     "proxy_x_m",      "proxy_y_m",  "proxy_z_m",  "proxy_qw",    "proxy_qx",
-    "proxy_qy",    "proxy_qz",      "force_x_N",      "force_y_N",  "force_z_N",  "torque_x_Nm", "torque_y_Nm",
-    "torque_z_Nm", "proxy_depth_m", "device_depth_m", "contacts",   "quality",    "status",      "iterations",
-    "tick_us",     "proxy_gap_m",   "suspended",      "tick_cpu_us"};
+    "tick",        "t_s",           "device_x_m",     "device_y_m",  "device_z_m", "device_qw",   "device_qx",
+    "device_qy",   "device_qz",     "proxy_x_m",      "proxy_y_m",   "proxy_z_m",  "proxy_qw",    "proxy_qx",
+    "proxy_qy",    "proxy_qz",      "force_x_N",      "force_y_N",   "force_z_N",  "torque_x_Nm", "torque_y_Nm",
+    "torque_z_Nm", "proxy_depth_m", "device_depth_m", "contacts",    "quality",    "status",      "iterations",
+    "tick_us",     "proxy_gap_m",   "suspended",      "tick_cpu_us", "proxy_lag_m"};
 
 constexpr double kStiffness = 800.0;  // [N/m]
 constexpr double kDepth = 2e-3;       // of the pressed block [m]

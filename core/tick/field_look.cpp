@@ -1,0 +1,107 @@
+#include "core/tick/field_look.h"
+
+#include <algorithm>
+
+#include "core/tick/obstacle_query.h"
+
+namespace passung::tick {
+
+namespace {
+
+/// The held part's points and edges in an obstacle's field, or in two-way contact the other way round.
+struct Way {
+    const field::DistanceField& field;
+    const Pose& X_WF;
+    const shell::SphereTree& shell;
+    const shell::EdgeCurves& edges;
+    const Pose& X_WS;
+    contact::ShellCertificates* known;
+};
+
+Way wayOf(const TickModel& model, const FieldLook& look, std::span<PairCertificates> known) noexcept {
+    const Obstacle& obstacle = model.obstacles[look.obstacle];
+    PairCertificates* const pair = known.empty() || look.proves ? nullptr : &known[look.obstacle];
+    if (look.back)
+        return {*model.held_field, look.X_WG,     *obstacle.shell,
+                *obstacle.edges,   obstacle.X_WF, pair != nullptr ? &pair->obstacle : nullptr};
+    return {*obstacle.field, obstacle.X_WF, *model.shell,
+            *model.edges,    look.X_WG,     pair != nullptr ? &pair->held : nullptr};
+}
+
+contact::QueryRequest requestOf(const TickModel& model, const FieldLook& look, int left) noexcept {
+    contact::QueryRequest request{.collect_below = look.reach,
+                                  .every_below = model.margins.accept,
+                                  .search_below = look.clearance,
+                                  .max_nodes = left,
+                                  .pauses = true,
+                                  .mode = model.contact.mode,
+                                  .prove = look.proves,
+                                  .facing = model.contact.two_way,
+                                  .edges = true};
+    return request;
+}
+
+/// After points come their edges, then the other way, then the next obstacle. True: there is none.
+bool turnToNext(const TickModel& model, FieldLook& look) noexcept {
+    look.along_edges = !look.along_edges;
+    if (look.along_edges) return false;
+    if (look.back) look.found.reverseFrom(look.first_of_way);
+    look.back = !look.back && model.obstacles[look.obstacle].shell != nullptr;
+    look.first_of_way = look.found.size();
+    if (look.back) return false;
+    look.found.assign(look.first_of_obstacle, look.obstacle);
+    look.first_of_obstacle = look.first_of_way;
+    return ++look.obstacle == model.obstacles.size();
+}
+
+void startRound(FieldLook& look, bool proves) noexcept {
+    look.proves = proves;
+    look.along_edges = look.back = false;
+    look.obstacle = 0;
+    look.first_of_way = look.first_of_obstacle = 0;
+    look.clearance = look.clearance_bound = look.search;
+    look.found.clear();
+}
+
+}  // namespace
+
+void beginLook(FieldLook& look, const Pose& X_WG, double reach, double search) noexcept {
+    look.open = true;
+    look.X_WG = X_WG;
+    look.reach = reach;
+    look.search = search;
+    look.workspace.drop();
+    look.edges.open = false;
+    startRound(look, false);
+}
+
+bool goOnLooking(const TickModel& model, FieldLook& look, std::span<PairCertificates> known, Report& report) noexcept {
+    const int budget = model.contact.budget_nodes;
+    int left = budget;
+    for (bool ended = false; !ended;) {
+        const Way way = wayOf(model, look, known);
+        const contact::QueryRequest request = requestOf(model, look, left);
+        const contact::QueryAnswer answer =
+            look.along_edges ? contact::searchEdges(way.field, way.X_WF, way.edges, way.X_WS, request, look.found,
+                                                    way.known != nullptr ? &way.known->stretches : nullptr, &look.edges)
+                             : contact::queryContacts(way.field, way.X_WF, way.shell, way.X_WS, request, look.workspace,
+                                                      look.found, way.known != nullptr ? &way.known->nodes : nullptr);
+        account(answer, report);
+        if (answer.paused) return false;
+        look.clearance = std::min(look.clearance, answer.phi);
+        look.clearance_bound = std::min(look.clearance_bound, answer.lower_bound);
+        left = std::max(1, left - answer.nodes_visited);
+        ended = turnToNext(model, look);
+        if (ended && !look.proves) {
+            look.nearest = look.clearance_bound = look.clearance;
+            ended = !(look.nearest > look.reach);
+            if (!ended) startRound(look, true);
+        }
+        if (!look.along_edges) left = budget;
+    }
+    if (look.proves) look.clearance_bound = std::max(look.reach, look.clearance_bound);
+    look.open = false;
+    return true;
+}
+
+}  // namespace passung::tick
