@@ -139,7 +139,9 @@ TEST(ReadChange, HoldsOnEveryWayBesideTheSurface) {
             ASSERT_GE(static_cast<double>(after[i]), least) << from.at(i).transpose() << " to " << to.at(i).transpose();
             nearest = std::min(nearest, (static_cast<double>(after[i]) - least) / way);
         }
-        if (value > 0.0 && std::isfinite(most)) ASSERT_LE(static_cast<double>(after[i]), most);
+        if (value > 0.0 && std::isfinite(most)) {
+            ASSERT_LE(static_cast<double>(after[i]), most);
+        }
     }
     EXPECT_GT(told, 50'000);
     EXPECT_LT(nearest, 1.0) << "the bound is not idle: the steepest way found uses so much less than it allows";
@@ -148,7 +150,9 @@ TEST(ReadChange, HoldsOnEveryWayBesideTheSurface) {
 TEST(ReadChange, IsUnknownInCellsOfSeveralSizesAndInHoles) {
     // Truth: the contract in the header.
     for (const DistanceField& field : someFields())
-        if (field.finestCell() < field.cell() || field.sheetOffset() > 0.0) EXPECT_EQ(field.change().within, 0.0);
+        if (field.finestCell() < field.cell() || field.sheetOffset() > 0.0) {
+            EXPECT_EQ(field.change().within, 0.0);
+        }
     EXPECT_EQ(ReadChange{}.leastAround(1.0, 0.0), 0.0);
 }
 
