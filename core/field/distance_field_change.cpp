@@ -49,7 +49,9 @@ void DistanceField::takeBorder(std::size_t brick, const std::array<int, 3>& side
     for (int z = low[2]; z <= high[2]; ++z)
         for (int y = low[1]; y <= high[1]; ++y)
             for (int x = low[0]; x <= high[0]; ++x) {
-                const auto node = static_cast<std::size_t>((z * kBrickNodes + y) * kBrickNodes + x);
+                const auto node =
+                    (static_cast<std::size_t>(z) * kBrickNodes + static_cast<std::size_t>(y)) * kBrickNodes +
+                    static_cast<std::size_t>(x);
                 take(bricks_[brick].low + bricks_[brick].step * samples_[brick * kBrickSamples + node]);
             }
 }

@@ -74,6 +74,7 @@ QString orderWord(plan::BlockOrder order) {
     QT_TRANSLATE_NOOP("stages", "contact.proxy_filter_hz is set: a low-pass of the proxy in contact"),
     QT_TRANSLATE_NOOP("stages", "proxy record"),
     QT_TRANSLATE_NOOP("stages", "overlap and contacts at the proxy, for the record"),
+    QT_TRANSLATE_NOOP("stages", "overlap and contacts at the proxy, and its lag, for the record"),
     QT_TRANSLATE_NOOP("stages", "hand depth"),
     QT_TRANSLATE_NOOP("stages", "the overlap at the device's pose is measured and recorded"),
     QT_TRANSLATE_NOOP("stages", "closed-form proxy"),

@@ -2107,6 +2107,10 @@
         <translation>Proxy-Aufzeichnung</translation>
     </message>
     <message>
+        <source>overlap and contacts at the proxy, and its lag, for the record</source>
+        <translation>Überlappung und Kontakte am Proxy und wie weit er zurückbleibt, für die Aufzeichnung</translation>
+    </message>
+    <message>
         <source>overlap and contacts at the proxy, for the record</source>
         <translation>Überlappung und Kontakte am Proxy, für die Aufzeichnung</translation>
     </message>
