@@ -153,15 +153,13 @@ public:
     double errorBound(const Vec3& p, FieldMode mode) const noexcept;
 
     /// How sample() and sampleMany() change, known of a field with bricks of one size and no holes.
-    ///   Stored numbers are off by half a step s of their brick at most and their exact values 1-Lipschitz, so that
-    ///   along
-    /// an axis an interpolant rises by at most 1 + s/edge, along any way by √3 times that. From brick to brick it jumps
-    /// by a step at most.
-    ///   Outside the bricks, where cells are large, nothing of that holds. But there all values, and those of the
-    ///   bricks
-    /// at the border, have a size of at least m, on each side of the surface with one sign: both are looked up. On a
-    /// way from a value v > 0 to one below L, 0 ≤ L < min(v, m), the last piece within bricks, and be it all of the
-    /// way, begins at v or at m or above, so that the way is at least  (min(v, m) - L - jumps) / steepest.
+    ///   Stored numbers are off by half a step s of their brick at most and their exact values 1-Lipschitz: along an
+    /// axis an interpolant rises by at most 1 + s/edge, along any way by √3 times that. From brick to brick it jumps by
+    /// a step at most.
+    ///   Outside the bricks, where cells are large, nothing of that holds. But there all values, and those of bricks at
+    /// the border, have a size of at least m, on each side of the surface with one sign: both are looked up. On a way
+    /// from a value v > 0 to one below L, 0 ≤ L < min(v, m), the last piece within bricks, and be it all of the way,
+    /// begins at v or at m or above, so that the way is at least  (min(v, m) - L - jumps) / steepest.
     ///   Limit cases: cells of several sizes, or holes → `within` = 0, and nothing is told.
     const ReadChange& change() const { return change_; }
 

@@ -29,16 +29,15 @@ Way wayOf(const TickModel& model, const FieldLook& look, std::span<PairCertifica
 }
 
 contact::QueryRequest requestOf(const TickModel& model, const FieldLook& look, int left) noexcept {
-    contact::QueryRequest request{.collect_below = look.reach,
-                                  .every_below = model.margins.accept,
-                                  .search_below = look.clearance,
-                                  .max_nodes = left,
-                                  .pauses = true,
-                                  .mode = model.contact.mode,
-                                  .prove = look.proves,
-                                  .facing = model.contact.two_way,
-                                  .edges = true};
-    return request;
+    return {.collect_below = look.reach,
+            .every_below = model.margins.accept,
+            .search_below = look.clearance,
+            .max_nodes = left,
+            .pauses = true,
+            .mode = model.contact.mode,
+            .prove = look.proves,
+            .facing = model.contact.two_way,
+            .edges = true};
 }
 
 /// After points come their edges, then the other way, then the next obstacle. True: there is none.
