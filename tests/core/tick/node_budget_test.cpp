@@ -99,11 +99,14 @@ Case wheelInCorner() {
 std::vector<Pose> pathOf(const Case& c) {
     Random random(5);
     std::vector<test::Wander> wander;
+    wander.reserve(6);
     for (int i = 0; i < 6; ++i) wander.emplace_back(random, 1.5, 0.5);
     const Vec3 start = c.spec.parts[0].X_WP.p;
+    const auto ticks = static_cast<std::size_t>((kMoves + kRests) / kTickSeconds);
     std::vector<Pose> path;
-    for (int i = 0; i < static_cast<int>((kMoves + kRests) / kTickSeconds); ++i) {
-        const double t = std::min(i * kTickSeconds, kMoves);
+    path.reserve(ticks);
+    for (std::size_t i = 0; i < ticks; ++i) {
+        const double t = std::min(static_cast<double>(i) * kTickSeconds, kMoves);
         const double s = std::clamp(t / 0.5, 0.0, 1.0), in = s * s * (3.0 - 2.0 * s);
         Vec3 p = start + in * (c.middle - start), turn;
         for (int k = 0; k < 3; ++k) {
