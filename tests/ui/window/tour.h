@@ -1,5 +1,7 @@
 #pragma once
 
+#include <QElapsedTimer>
+
 #include <functional>
 
 #include "study/protocol/protocol_reader.h"
@@ -116,10 +118,19 @@ private:
         see(app_->participant(), "participant_end");
     }
 
+    /// A window that comes up between the two clicks takes the focus and the first click back: then both are made
+    /// again.
     void endSession() {
-        activate(console_);
-        click("abort");
-        click("abort");  // really
+        const auto is_over = [&] { return run().view().is<presenter::state::Incomplete, presenter::state::Failed>(); };
+        while (!is_over()) {
+            activate(console_);
+            QQuickItem* abort = item(console_, "abort");
+            if (abort != nullptr) click(console_, "abort");
+            if (abort != nullptr && abort->property("armed").toBool()) continue;
+            QElapsedTimer waiting;
+            waiting.start();
+            waitFor([&] { return is_over() || waiting.hasExpired(2000); });
+        }
         waitFor<presenter::state::Incomplete>();
     }
 
