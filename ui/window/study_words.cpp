@@ -70,6 +70,9 @@ QString orderWord(plan::BlockOrder order) {
         "stages",
         "contact.method is god_object: the proxy follows the hand as far as all contacts within reach let "
         "it"),
+    QT_TRANSLATE_NOOP("stages",
+                      "contact.budget_nodes with god_object_heuristic: the proxy goes the way of god_object, which can "
+                      "stop in a look and go on in the next tick"),
     QT_TRANSLATE_NOOP("stages", "proxy filter"),
     QT_TRANSLATE_NOOP("stages", "contact.proxy_filter_hz is set: a low-pass of the proxy in contact"),
     QT_TRANSLATE_NOOP("stages", "proxy record"),

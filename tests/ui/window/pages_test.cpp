@@ -2,6 +2,7 @@
 #include <QtQml/QQmlEngine>
 #include <fstream>
 #include <set>
+#include <tuple>
 
 #include "analysis/export/export.h"
 #include "core/scene/scene.h"
@@ -412,8 +413,10 @@ std::vector<StageText> stageTexts() {
         {ContactMethod::GodObjectHeuristic, PenaltyCoupling::Direct},
         {ContactMethod::GodObject, PenaltyCoupling::Direct}};
     for (const auto& [method, coupling] : methods) {
-        for (const auto& [two_way, geometry] :
-             {std::pair(false, Geometry::Field), {true, Geometry::Field}, {false, Geometry::Auto}}) {
+        for (const auto& [two_way, geometry, nodes] : {std::tuple(false, Geometry::Field, 0),
+                                                       {true, Geometry::Field, 0},
+                                                       {false, Geometry::Field, 100},
+                                                       {false, Geometry::Auto, 0}}) {
             scene::SceneSpec spec;
             spec.parts.push_back({.name = "ball",
                                   .geometry = shape::Sphere{0.02},
@@ -427,6 +430,7 @@ std::vector<StageText> stageTexts() {
             spec.contact.coupling = coupling;
             spec.contact.two_way = two_way;
             spec.contact.geometry = geometry;
+            spec.contact.budget_nodes = nodes;
             spec.contact.proxy_filter = 50.0;
             spec.record_hand_depth = true;
             spec.start_gate.hold_ticks = 10;

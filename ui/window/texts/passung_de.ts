@@ -2107,6 +2107,10 @@
         <translation>Proxy-Aufzeichnung</translation>
     </message>
     <message>
+        <source>contact.budget_nodes with god_object_heuristic: the proxy goes the way of god_object, which can stop in a look and go on in the next tick</source>
+        <translation>contact.budget_nodes mit god_object_heuristic: Der Proxy geht den Weg von god_object, der mitten in einer Abfrage anhalten und im nächsten Takt weitergehen kann</translation>
+    </message>
+    <message>
         <source>overlap and contacts at the proxy, and its lag, for the record</source>
         <translation>Überlappung und Kontakte am Proxy und wie weit er zurückbleibt, für die Aufzeichnung</translation>
     </message>
