@@ -84,8 +84,7 @@ inline constexpr StageOf kProxySweep{
          [](const TickModel& model) {
              if (model.contact.method == scene::ContactMethod::GodObjectHeuristic)
                  return "contact.budget_nodes with god_object_heuristic: the proxy goes the way of god_object, which "
-                        "can "
-                        "stop in a look and go on in the next tick";
+                        "can stop in a look and go on in the next tick";
              return model.contact.two_way
                         ? "contact.method is god_object: the proxy follows the hand as far as all contacts within "
                           "reach let it; contact.two_way: of the held part's points and of the obstacles' points"

@@ -27,18 +27,19 @@ Named(const char*, const Value&) -> Named<Value>;
 /// "INSERT INTO table(a, b) VALUES(?, ?)"; `verb`: "INSERT" or "INSERT OR IGNORE".
 std::string insertText(const char* verb, const char* table, std::initializer_list<const char*> columns);
 
-/// Adds a row.
-template <class... Values>
-void insertRow(const Database& database, const char* table, const Named<Values>&... values) {
-    database.prepare(insertText("INSERT", table, {values.column...})).bind(values.value...).run();
-}
-
 /// Adds one of several rows of a table; `kept` is the statement of all, which the first prepares.
 template <class... Values>
 void insertRow(std::optional<Statement>& kept, const Database& database, const char* table,
                const Named<Values>&... values) {
     if (!kept) kept.emplace(database.prepare(insertText("INSERT", table, {values.column...})));
     kept->bind(values.value...).run();
+}
+
+/// Adds a row.
+template <class... Values>
+void insertRow(const Database& database, const char* table, const Named<Values>&... values) {
+    std::optional<Statement> once;
+    insertRow(once, database, table, values...);
 }
 
 /// Adds a row unless its key is there.
