@@ -11,7 +11,7 @@ namespace passung::tick {
 namespace {
 
 /// In place of the pushes so far: K λ along each contact's normal (contact_energy.h).
-void noteHold(const TickModel& model, const Proxy& proxy, const closed_form::PoseMemory& hold,
+void noteHold(const HandModel& model, const Proxy& proxy, const closed_form::PoseMemory& hold,
               Pushes& pushes) noexcept {
     clearPushes(pushes);
     const double K = model.contact.stiffness;
@@ -31,12 +31,12 @@ void note(const closed_form::ConstrainedPose& found, Report& report) noexcept {
     report.iterations += static_cast<std::uint32_t>(found.iterations);
 }
 
-int mostLooks(const TickModel& model, const ClosedFormMemory& memory) noexcept {
+int mostLooks(const HandModel& model, const ClosedFormMemory& memory) noexcept {
     if (memory.has_thread) return closed_form::kThreadLooks;
     return model.contact.method == scene::ContactMethod::GodObject ? closed_form::kMostLooks : kHeuristicLooks;
 }
 
-std::vector<closed_form::SolidPair> pairsOf(const TickModel& model) {
+std::vector<closed_form::SolidPair> pairsOf(const HandModel& model) {
     std::vector<closed_form::SolidPair> pairs;
     for (std::size_t i = 0; i < model.obstacles.size(); ++i)
         pairs.push_back({&model.solids.front(), &model.solids[i + 1], model.obstacles[i].X_WF, model.metric_radius});
@@ -45,7 +45,7 @@ std::vector<closed_form::SolidPair> pairsOf(const TickModel& model) {
 
 }  // namespace
 
-ClosedFormMemory closedFormMemory(const TickModel& model) {
+ClosedFormMemory closedFormMemory(const HandModel& model) {
     ClosedFormMemory memory;
     const auto pairs = pairsOf(model);
     memory.solver = closed_form::PoseSolver(pairs);
@@ -54,7 +54,7 @@ ClosedFormMemory closedFormMemory(const TickModel& model) {
     return memory;
 }
 
-void followInClosedForm(const TickModel& model, const HandSample& hand, Proxy& proxy, ClosedFormHold& held,
+void followInClosedForm(const HandModel& model, const HandSample& hand, Proxy& proxy, ClosedFormHold& held,
                         ClosedFormMemory& memory, Pushes& pushes, Report& report) noexcept {
     if (hand.relocated) {  // a spring from the old place would throw the hand across the room
         proxy.X_WG = hand.X_WH;
@@ -68,7 +68,7 @@ void followInClosedForm(const TickModel& model, const HandSample& hand, Proxy& p
     noteHold(model, proxy, held.hold, pushes);
 }
 
-void filterInClosedForm(const TickModel& model, const HandSample& hand, const ClosedFormHold& held,
+void filterInClosedForm(const HandModel& model, const HandSample& hand, const ClosedFormHold& held,
                         FilteredHold& filter, Proxy& proxy, ClosedFormMemory& memory, Report& report) noexcept {
     if (hand.relocated) filter.has_last_proxy = false;
     const double alpha = 1.0 - std::exp(-2.0 * std::numbers::pi * model.contact.proxy_filter * kTickSeconds);
@@ -86,13 +86,13 @@ void filterInClosedForm(const TickModel& model, const HandSample& hand, const Cl
     filter.has_last_proxy = true;
 }
 
-void describeClosedForm(const TickModel&, const Proxy& proxy, const ClosedFormHold& held,
+void describeClosedForm(const HandModel&, const Proxy& proxy, const ClosedFormHold& held,
                         ContactRecord& record) noexcept {
     record.proxy_depth = overlap(proxy);
     record.contacts = static_cast<std::uint32_t>(held.hold.count);
 }
 
-void measureClosedFormDepth(const TickModel&, const HandSample& hand, ClosedFormMemory& memory, HandDepth& depth,
+void measureClosedFormDepth(const HandModel&, const HandSample& hand, ClosedFormMemory& memory, HandDepth& depth,
                             Report& report) noexcept {
     depth.hand_depth = 0.0;
     for (closed_form::ContactSearch& search : memory.at_hand) {

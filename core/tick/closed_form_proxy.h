@@ -4,10 +4,10 @@
 
 #include "core/closed_form/pose_solver.h"
 #include "core/tick/energy_account.h"
+#include "core/tick/hand_model.h"
 #include "core/tick/proxy.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -48,10 +48,10 @@ struct ClosedFormMemory {
 };
 
 /// Memory for the model's pairs. `model` outlives it.
-ClosedFormMemory closedFormMemory(const TickModel& model);
+ClosedFormMemory closedFormMemory(const HandModel& model);
 
 /// Stages, in this order. rt-safe.
-void followInClosedForm(const TickModel& model, const HandSample& hand, Proxy& proxy, ClosedFormHold& held,
+void followInClosedForm(const HandModel& model, const HandSample& hand, Proxy& proxy, ClosedFormHold& held,
                         ClosedFormMemory& memory, Pushes& pushes, Report& report) noexcept;
 inline constexpr StageOf kClosedFormProxy{
     followInClosedForm,
@@ -59,9 +59,9 @@ inline constexpr StageOf kClosedFormProxy{
      .parameters = "contact.method, geometry, stiffness_N_per_m, rotational_stiffness",
      .cost = "a look at the pairs' faces and edges and a motion under contacts for each sub-step, mostly two; bounds: "
              "kMostLooks, kHeuristicLooks, kMostMeetings",
-     .needs = [](const TickModel& model) { return model.hasClosedForm(); },
+     .needs = [](const HandModel& model) { return model.hasClosedForm(); },
      .reason =
-         [](const TickModel& model) {
+         [](const HandModel& model) {
              return model.contact.method == scene::ContactMethod::GodObject
                         ? "contact.method is god_object and all pairs have a closed form: the proxy follows the hand "
                           "as far as the shapes' faces and edges let it; no distance field, no points"
@@ -70,36 +70,36 @@ inline constexpr StageOf kClosedFormProxy{
          }}};
 
 /// The low-pass of proxy.h. The proxy goes towards the filtered pose under the contacts, so that it costs no overlap.
-void filterInClosedForm(const TickModel& model, const HandSample& hand, const ClosedFormHold& held,
+void filterInClosedForm(const HandModel& model, const HandSample& hand, const ClosedFormHold& held,
                         FilteredHold& filter, Proxy& proxy, ClosedFormMemory& memory, Report& report) noexcept;
 inline constexpr StageOf kClosedFormFilter{
     filterInClosedForm,
     {.name = "closed-form filter",
      .parameters = "contact.proxy_filter_hz",
      .cost = "in contact that of the closed-form proxy again",
-     .needs = [](const TickModel& model) { return model.hasClosedForm() && model.contact.proxy_filter > 0.0; },
-     .reason = [](const TickModel&) { return "contact.proxy_filter_hz is set: a low-pass of the proxy in contact"; }}};
+     .needs = [](const HandModel& model) { return model.hasClosedForm() && model.contact.proxy_filter > 0.0; },
+     .reason = [](const HandModel&) { return "contact.proxy_filter_hz is set: a low-pass of the proxy in contact"; }}};
 
 /// Overlap, and the contacts that hold the proxy.
-void describeClosedForm(const TickModel& model, const Proxy& proxy, const ClosedFormHold& held,
+void describeClosedForm(const HandModel& model, const Proxy& proxy, const ClosedFormHold& held,
                         ContactRecord& record) noexcept;
 inline constexpr StageOf kClosedFormRecord{
     describeClosedForm,
     {.name = "closed-form record",
      .parameters = "",
      .cost = "constant",
-     .needs = [](const TickModel& model) { return model.hasClosedForm(); },
-     .reason = [](const TickModel&) { return "overlap and contacts at the proxy, for the record"; }}};
+     .needs = [](const HandModel& model) { return model.hasClosedForm(); },
+     .reason = [](const HandModel&) { return "overlap and contacts at the proxy, for the record"; }}};
 
 /// The deepest overlap at the hand's pose: of faces with edges and cores, not of points.
-void measureClosedFormDepth(const TickModel& model, const HandSample& hand, ClosedFormMemory& memory, HandDepth& depth,
+void measureClosedFormDepth(const HandModel& model, const HandSample& hand, ClosedFormMemory& memory, HandDepth& depth,
                             Report& report) noexcept;
 inline constexpr StageOf kClosedFormDepth{
     measureClosedFormDepth,
     {.name = "closed-form hand depth",
      .parameters = "contact.record_hand_depth",
      .cost = "a look at the pairs' faces and edges",
-     .needs = [](const TickModel& model) { return model.hasClosedForm() && model.record_hand_depth; },
-     .reason = [](const TickModel&) { return "the overlap at the device's pose is measured and recorded"; }}};
+     .needs = [](const HandModel& model) { return model.hasClosedForm() && model.record_hand_depth; },
+     .reason = [](const HandModel&) { return "the overlap at the device's pose is measured and recorded"; }}};
 
 }  // namespace passung::tick

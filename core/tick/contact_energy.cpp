@@ -19,7 +19,7 @@ void clearPushes(Pushes& pushes) noexcept {
     for (ObstaclePush& push : pushes.pushes) push = ObstaclePush{};
 }
 
-void notePushes(const TickModel& model, const Proxy& proxy, const motion::ConstrainedMotion& motion,
+void notePushes(const HandModel& model, const Proxy& proxy, const motion::ConstrainedMotion& motion,
                 const motion::FrictionPatches& rubbing, Pushes& pushes) noexcept {
     clearPushes(pushes);
     const double K = model.contact.stiffness;
@@ -40,7 +40,7 @@ void notePushes(const TickModel& model, const Proxy& proxy, const motion::Constr
     }
 }
 
-void sharePushes(const TickModel&, const HandSample& hand, const HandWrench& wrench, Pushes& pushes) noexcept {
+void sharePushes(const HandModel&, const HandSample& hand, const HandWrench& wrench, Pushes& pushes) noexcept {
     if (!hand.input_usable) clearPushes(pushes);
     double pressure = 0.0;
     Wrench rest = wrench.F_H_W;

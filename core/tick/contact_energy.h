@@ -2,9 +2,9 @@
 
 #include "core/motion/friction.h"
 #include "core/tick/energy_account.h"
+#include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -28,18 +28,18 @@ namespace passung::tick {
 /// Forgets the pushes of the tick before. rt-safe.
 void clearPushes(Pushes& pushes) noexcept;
 /// In place of the pushes so far: those of the contacts and patches that hold `motion` of the proxy. rt-safe.
-void notePushes(const TickModel& model, const Proxy& proxy, const motion::ConstrainedMotion& motion,
+void notePushes(const HandModel& model, const Proxy& proxy, const motion::ConstrainedMotion& motion,
                 const motion::FrictionPatches& rubbing, Pushes& pushes) noexcept;
 
 /// Stage, of scenes with obstacles: shares out what else is in F_H_W. After the wrench, before its delay.
-void sharePushes(const TickModel& model, const HandSample& hand, const HandWrench& wrench, Pushes& pushes) noexcept;
+void sharePushes(const HandModel& model, const HandSample& hand, const HandWrench& wrench, Pushes& pushes) noexcept;
 inline constexpr StageOf kContactShares{
     sharePushes,
     {.name = "contact shares",
      .parameters = "",
      .cost = "a little for each obstacle",
-     .needs = [](const TickModel& model) { return model.hasObstacles(); },
-     .reason = [](const TickModel&) { return "always: the energy account is kept for each obstacle too"; }}};
+     .needs = [](const HandModel& model) { return model.hasObstacles(); },
+     .reason = [](const HandModel&) { return "always: the energy account is kept for each obstacle too"; }}};
 
 /// Books what was sent since the good sample before over the handle's motion since then. rt-safe.
 void bookPairs(EnergyAccounts& accounts, const Vec3& moved, const Vec3& turned, int ticks) noexcept;

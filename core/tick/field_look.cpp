@@ -18,7 +18,7 @@ struct Way {
     contact::ShellCertificates* known;
 };
 
-Way wayOf(const TickModel& model, const FieldLook& look, std::span<PairCertificates> known) noexcept {
+Way wayOf(const HandModel& model, const FieldLook& look, std::span<PairCertificates> known) noexcept {
     const Obstacle& obstacle = model.obstacles[look.obstacle];
     PairCertificates* const pair = known.empty() || look.proves ? nullptr : &known[look.obstacle];
     if (look.back)
@@ -28,7 +28,7 @@ Way wayOf(const TickModel& model, const FieldLook& look, std::span<PairCertifica
             *model.edges,    look.X_WG,     pair != nullptr ? &pair->held : nullptr};
 }
 
-contact::QueryRequest requestOf(const TickModel& model, const FieldLook& look, int left) noexcept {
+contact::QueryRequest requestOf(const HandModel& model, const FieldLook& look, int left) noexcept {
     return {.collect_below = look.reach,
             .every_below = model.margins.accept,
             .search_below = look.clearance,
@@ -41,7 +41,7 @@ contact::QueryRequest requestOf(const TickModel& model, const FieldLook& look, i
 }
 
 /// After points come their edges, then the other way, then the next obstacle. True: there is none.
-bool turnToNext(const TickModel& model, FieldLook& look) noexcept {
+bool turnToNext(const HandModel& model, FieldLook& look) noexcept {
     look.along_edges = !look.along_edges;
     if (look.along_edges) return false;
     if (look.back) look.found.reverseFrom(look.first_of_way);
@@ -74,7 +74,7 @@ void beginLook(FieldLook& look, const Pose& X_WG, double reach, double search) n
     startRound(look, false);
 }
 
-bool goOnLooking(const TickModel& model, FieldLook& look, std::span<PairCertificates> known, Report& report) noexcept {
+bool goOnLooking(const HandModel& model, FieldLook& look, std::span<PairCertificates> known, Report& report) noexcept {
     const int budget = model.contact.budget_nodes;
     int left = budget;
     for (bool ended = false; !ended;) {

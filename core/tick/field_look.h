@@ -1,8 +1,8 @@
 #pragma once
 
+#include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -19,6 +19,6 @@ namespace passung::tick {
 void beginLook(FieldLook& look, const Pose& X_WG, double reach, double search) noexcept;
 
 /// Goes on with a look that is open, by a budget's worth; true: it has ended. rt-safe.
-bool goOnLooking(const TickModel& model, FieldLook& look, std::span<PairCertificates> known, Report& report) noexcept;
+bool goOnLooking(const HandModel& model, FieldLook& look, std::span<PairCertificates> known, Report& report) noexcept;
 
 }  // namespace passung::tick

@@ -54,7 +54,7 @@ struct StepBounds {
 /// Makes what is `allowed` of `wanted` within `bounds`.
 Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const motion::Surroundings& around,
               AllowedMotion allowed, const StepBounds& bounds, const ProxyWay& way, LookBudget& budget) noexcept {
-    const TickModel& model = moving.model;
+    const HandModel& model = moving.model;
     Proxy& proxy = moving.proxy;
     SuspendedStep& step = proxy.step;
     ProxyPlace here = placeOf(proxy);
@@ -102,7 +102,7 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
 
 }  // namespace
 
-void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
+void sweepProxy(const HandModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
                 Pushes& pushes, Report& report) noexcept {
     const MovingProxy moving{{model, proxy, memory, report}, hand, motion, pushes};
     if (!startProxy(moving)) {

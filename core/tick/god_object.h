@@ -1,9 +1,9 @@
 #pragma once
 
 #include "core/tick/energy_account.h"
+#include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -69,7 +69,7 @@ inline constexpr int kSweeps = 16;
 inline constexpr int kCuts = 4;  // of one step
 
 /// Stage; those of proxy.h follow. rt-safe.
-void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
+void sweepProxy(const HandModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
                 Pushes& pushes, Report& report) noexcept;
 inline constexpr StageOf kProxySweep{
     sweepProxy,
@@ -77,11 +77,11 @@ inline constexpr StageOf kProxySweep{
      .parameters = "contact.method, stiffness_N_per_m, rotational_stiffness, mode, budget_nodes, two_way; friction",
      .cost = "at most 12 000 units of work a tick, about 0.5 ms; what is left goes on in the next tick",
      .needs =
-         [](const TickModel& model) {
+         [](const HandModel& model) {
              return model.hasFieldProxyOf(scene::ContactMethod::GodObject) || model.hasNodeBudget();
          },
      .reason =
-         [](const TickModel& model) {
+         [](const HandModel& model) {
              if (model.contact.method == scene::ContactMethod::GodObjectHeuristic)
                  return "contact.budget_nodes with god_object_heuristic: the proxy goes the way of god_object, which "
                         "can stop in a look and go on in the next tick";

@@ -14,7 +14,7 @@ constexpr double kLeastLever = 0.1;     // per ρ: contacts that a rotation hard
 constexpr double kLargestTurn = 0.035;  // [rad] of one correction
 
 /// Direction of the correction: translation along the penalty force, rotation about its torque, shared by λ.
-motion::Motion correctionOf(const TickModel& model, const Proxy& proxy, double depth) noexcept {
+motion::Motion correctionOf(const HandModel& model, const Proxy& proxy, double depth) noexcept {
     const double rho = model.metric_radius;
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
     for (const contact::ContactPoint& c : proxy.manifold) {
@@ -43,12 +43,12 @@ motion::Motion correctionOf(const TickModel& model, const Proxy& proxy, double d
 }
 
 /// What a stage leaves of the overlap that it begins with.
-double leftOf(const TickModel& model, double overlap) noexcept {
+double leftOf(const HandModel& model, double overlap) noexcept {
     return std::max(model.margins.keep, overlap - kLeave * model.finest_cell);
 }
 
 /// What is around the proxy, with no more asked of what is deeper than `left`.
-motion::Surroundings around(const TickModel& model, const Proxy& proxy, double left) noexcept {
+motion::Surroundings around(const HandModel& model, const Proxy& proxy, double left) noexcept {
     motion::Surroundings result = surroundings(model, proxy);
     result.sunk_out = -left;
     return result;
@@ -70,7 +70,7 @@ void relieve(const ProxyView& view, double reach, double left, LookBudget& budge
 
 }  // namespace
 
-void correctProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion,
+void correctProxy(const HandModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion,
                   QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
     const MovingProxy moving{{model, proxy, memory, report}, hand, motion, pushes};
     if (!startProxy(moving)) return;
@@ -92,7 +92,7 @@ void correctProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, 
     }
 }
 
-void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
+void moveProxy(const HandModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
                Pushes& pushes, Report& report) noexcept {
     const MovingProxy moving{{model, proxy, memory, report}, hand, motion, pushes};
     const double s = model.finest_cell;

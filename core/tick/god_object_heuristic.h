@@ -1,9 +1,9 @@
 #pragma once
 
 #include "core/tick/energy_account.h"
+#include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -62,7 +62,7 @@ inline constexpr int kSubSteps = 12;
 inline constexpr int kCorrections = 3;
 
 /// Stages, in this order; those of proxy.h follow. First #1, #2.
-void correctProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion,
+void correctProxy(const HandModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion,
                   QueryMemory& memory, Pushes& pushes, Report& report) noexcept;
 inline constexpr StageOf kProxyCorrection{
     correctProxy,
@@ -70,11 +70,11 @@ inline constexpr StageOf kProxyCorrection{
      .parameters = "contact.method, mode, two_way",
      .cost = "nothing, or a few queries of each obstacle; bound: kCorrections",
      .needs =
-         [](const TickModel& model) {
+         [](const HandModel& model) {
              return model.hasFieldProxyOf(scene::ContactMethod::GodObjectHeuristic) && !model.hasNodeBudget();
          },
      .reason =
-         [](const TickModel& model) {
+         [](const HandModel& model) {
              return model.contact.two_way
                         ? "contact.method is god_object_heuristic: steps #1 and #2, contacts at the last proxy "
                           "and relief of its overlap; contact.two_way: here and below of the held part's "
@@ -84,7 +84,7 @@ inline constexpr StageOf kProxyCorrection{
          }}};
 
 /// #3, #4.
-void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
+void moveProxy(const HandModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
                Pushes& pushes, Report& report) noexcept;
 inline constexpr StageOf kProxyMotion{
     moveProxy,
@@ -92,10 +92,10 @@ inline constexpr StageOf kProxyMotion{
      .parameters = "contact.stiffness_N_per_m, rotational_stiffness, mode, two_way; friction",
      .cost = "at most 12 000 units of work a tick, about 0.5 ms; what is left goes on in the next tick",
      .needs =
-         [](const TickModel& model) {
+         [](const HandModel& model) {
              return model.hasFieldProxyOf(scene::ContactMethod::GodObjectHeuristic) && !model.hasNodeBudget();
          },
      .reason =
-         [](const TickModel&) { return "steps #3 and #4: the proxy follows the hand as far as the contacts let it"; }}};
+         [](const HandModel&) { return "steps #3 and #4: the proxy follows the hand as far as the contacts let it"; }}};
 
 }  // namespace passung::tick

@@ -14,7 +14,7 @@ bool follows(const scene::OutputLimits& limits, const Pose& before, const Pose& 
 }
 
 /// Counts the samples that do not follow from the last good one but from each other; true when they are enough.
-bool agreesWithOthers(const TickModel& model, InputGuard& guard, const Pose& X_BD) noexcept {
+bool agreesWithOthers(const HandModel& model, InputGuard& guard, const Pose& X_BD) noexcept {
     const bool agrees = guard.other_samples > 0 && guard.periods_since_other <= kLongestSearchGap &&
                         follows(model.limits, guard.X_BD_other, X_BD, guard.periods_since_other);
     guard.other_samples = agrees ? guard.other_samples + 1 : 1;
@@ -36,7 +36,7 @@ void accept(InputGuard& guard, HandSample& hand, const Pose& X_BD, bool confirme
 }
 
 /// Takes the reading if it is good. Otherwise says what is wrong with it.
-std::uint32_t takeReading(const TickModel& model, const DeviceReading& reading, InputGuard& guard, HandSample& hand,
+std::uint32_t takeReading(const HandModel& model, const DeviceReading& reading, InputGuard& guard, HandSample& hand,
                           Report& report) noexcept {
     const Pose& X_BD = reading.X_BD;
     if (!reading.fresh) return kDeviceStale;
@@ -62,7 +62,7 @@ Pose registeredPose(const scene::Registration& registration, const Pose& X_BD) n
     return registration.X_WB * (scaled * registration.X_DH);
 }
 
-void guardInput(const TickModel& model, const Reading& device, const Proxy& proxy, InputGuard& guard, HandSample& hand,
+void guardInput(const HandModel& model, const Reading& device, const Proxy& proxy, InputGuard& guard, HandSample& hand,
                 Report& report) noexcept {
     guard.periods_since_good += device.reading.periods;
     guard.periods_since_other += device.reading.periods;
@@ -78,7 +78,7 @@ void guardInput(const TickModel& model, const Reading& device, const Proxy& prox
     hand.X_WH = guard.has_good_pose ? registeredPose(model.registration, guard.X_BD_good) : proxy.X_WG;
 }
 
-void waitForStartPose(const TickModel& model, const HandSample& hand, Engagement& gate) noexcept {
+void waitForStartPose(const HandModel& model, const HandSample& hand, Engagement& gate) noexcept {
     if (gate.engaged) return;
     const double away = (hand.X_WH.p - model.X_WG_start.p).norm();
     const double turned = rotationVector(hand.X_WH.q * model.X_WG_start.q.conjugate()).norm();

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
+#include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -43,7 +43,7 @@ struct Engagement {
 ///   sample of all, and the first after rejected ones, has nothing to be judged by and is taken at its word; but it is
 ///   not held against a jump: the output is zero until samples agree again. Limit case: a device that is slower than
 ///   the tick (fresh every other tick) is held on each tick between.
-void guardInput(const TickModel& model, const Reading& device, const Proxy& proxy, InputGuard& guard, HandSample& hand,
+void guardInput(const HandModel& model, const Reading& device, const Proxy& proxy, InputGuard& guard, HandSample& hand,
                 Report& report) noexcept;
 inline constexpr StageOf kInputGuard{
     guardInput,
@@ -51,22 +51,22 @@ inline constexpr StageOf kInputGuard{
      .parameters = "device.max_speed_m_per_s, device.registration",
      .cost = "constant",
      .before_start = true,
-     .needs = [](const TickModel&) { return true; },
-     .reason = [](const TickModel&) { return "always: a device may lie, stall or vanish"; }}};
+     .needs = [](const HandModel&) { return true; },
+     .reason = [](const HandModel&) { return "always: a device may lie, stall or vanish"; }}};
 
 /// Stage: the trial begins when the hand holds the start pose.
 ///   Opens after hold_ticks ticks within the tolerances; never closes again. While it is closed only the stages marked
 ///   before_start run, so that the output is zero.
-void waitForStartPose(const TickModel& model, const HandSample& hand, Engagement& gate) noexcept;
+void waitForStartPose(const HandModel& model, const HandSample& hand, Engagement& gate) noexcept;
 inline constexpr StageOf kStartGate{
     waitForStartPose,
     {.name = "start gate",
      .parameters = "start_gate",
      .cost = "constant",
      .before_start = true,
-     .needs = [](const TickModel& model) { return model.start_gate.hold_ticks > 0; },
+     .needs = [](const HandModel& model) { return model.start_gate.hold_ticks > 0; },
      .reason =
-         [](const TickModel&) { return "start_gate is set: contact begins when the hand holds the start pose"; }}};
+         [](const HandModel&) { return "start_gate is set: contact begins when the hand holds the start pose"; }}};
 
 /// Where the held part is when the handle is at `X_BD`: X_WH = X_WB · scale(X_BD) · X_DH. rt-safe.
 Pose registeredPose(const scene::Registration& registration, const Pose& X_BD) noexcept;

@@ -46,7 +46,7 @@ contact::QueryAnswer query(const field::DistanceField& field, const Pose& X_WF, 
 /// The obstacle's points against the held part's field. If the held part moves by u, φ at a fixed point changes by
 /// -g · u, g the gradient of its field: told with normal and gradient reversed such a point is a contact like any
 /// other.
-contact::QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle, const Pose& X_WS,
+contact::QueryAnswer queryBack(const HandModel& model, const Obstacle& obstacle, const Pose& X_WS,
                                const contact::QueryRequest& request, contact::QueryWorkspace& workspace,
                                contact::ContactManifold& manifold, contact::ShellCertificates* known) noexcept {
     const std::size_t first = manifold.size();
@@ -61,7 +61,7 @@ contact::QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle,
 
 }  // namespace
 
-contact::QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, contact::QueryRequest request,
+contact::QueryAnswer queryObstacles(const HandModel& model, const Pose& X_WS, contact::QueryRequest request,
                                     contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
                                     std::span<ObstaclePush> pushes, std::span<PairCertificates> known) noexcept {
     request.mode = model.contact.mode;

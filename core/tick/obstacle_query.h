@@ -3,9 +3,9 @@
 #include <span>
 
 #include "core/tick/energy_account.h"
+#include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -15,7 +15,7 @@ namespace passung::tick {
 /// mode and budget (per obstacle and way) replace those of `request`. Appends to `manifold`; returns the deepest or
 /// closest answer, with nodes added up and the least quality. Each obstacle's own load is added to its push, if
 /// `pushes` are given; what is `known` of each is made use of. rt-safe.
-contact::QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, contact::QueryRequest request,
+contact::QueryAnswer queryObstacles(const HandModel& model, const Pose& X_WS, contact::QueryRequest request,
                                     contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
                                     std::span<ObstaclePush> pushes = {},
                                     std::span<PairCertificates> known = {}) noexcept;

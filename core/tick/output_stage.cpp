@@ -26,19 +26,19 @@ double factorRising(const Vec3& v, const Vec3& last, const Vec3& at_sample, doub
 }
 
 /// From the handle's origin to the held part's, world axes.
-Vec3 lever(const TickModel& model, const HandSample& hand) noexcept {
+Vec3 lever(const HandModel& model, const HandSample& hand) noexcept {
     return hand.X_WH.q * (model.registration.X_DH.q.conjugate() * model.registration.X_DH.p);
 }
 
 /// From the held part's origin and world axes to the handle's origin and device base axes.
-Wrench wrenchOnDevice(const TickModel& model, const HandSample& hand, const Wrench& F_H_W) noexcept {
+Wrench wrenchOnDevice(const HandModel& model, const HandSample& hand, const Wrench& F_H_W) noexcept {
     const Quat R_BW = model.registration.X_WB.q.conjugate();
     const Vec3 p_DH_W = lever(model, hand);
     return {R_BW * F_H_W.force, R_BW * (F_H_W.torque + p_DH_W.cross(F_H_W.force))};
 }
 
 /// The pairs' shares of what was sent, of whose force and torque the limits left so much.
-void splitSent(const TickModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
+void splitSent(const HandModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
                double force_left, double torque_left) noexcept {
     Wrench rest = sent.last_sent;
     for (std::size_t i = 0; i < sent.last_shares.size(); ++i) {
@@ -52,13 +52,13 @@ void splitSent(const TickModel& model, const HandSample& hand, const Pushes& pus
 
 }  // namespace
 
-Wrench wrenchOnHeldPart(const TickModel& model, const HandSample& hand, const Wrench& F_D_B) noexcept {
+Wrench wrenchOnHeldPart(const HandModel& model, const HandSample& hand, const Wrench& F_D_B) noexcept {
     const Quat& R_WB = model.registration.X_WB.q;
     const Vec3 force = R_WB * F_D_B.force;
     return {force, R_WB * F_D_B.torque - lever(model, hand).cross(force)};
 }
 
-void delayOutput(const TickModel& model, const HandSample& hand, DelayLine& line, Pushes& pushes,
+void delayOutput(const HandModel& model, const HandSample& hand, DelayLine& line, Pushes& pushes,
                  HandWrench& wrench) noexcept {
     const auto length = static_cast<std::size_t>(model.limits.delay_ticks) + 1;
     const std::size_t in = line.place, out = (line.place + 1) % length;
@@ -72,13 +72,13 @@ void delayOutput(const TickModel& model, const HandSample& hand, DelayLine& line
     line.place = out;
 }
 
-void withholdWrench(const TickModel&, Pushes& pushes, HandWrench& wrench, Report& report) noexcept {
+void withholdWrench(const HandModel&, Pushes& pushes, HandWrench& wrench, Report& report) noexcept {
     report.status |= kWrenchWithheld;
     clearPushes(pushes);
     if (isFinite(wrench.F_H_W)) wrench.F_H_W = Wrench{};
 }
 
-void limitOutput(const TickModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
+void limitOutput(const HandModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
                  HandWrench& felt, CommandedWrench& command, Report& report) noexcept {
     const scene::OutputLimits& limits = model.limits;
     Wrench wrench = wrenchOnDevice(model, hand, felt.F_H_W);

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/tick/energy_account.h"
+#include "core/tick/hand_model.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -26,32 +26,32 @@ struct SentWrench {
 
 /// What a wrench about the handle's origin in the device's base axes is on the held part: about its origin, world axes.
 /// rt-safe.
-Wrench wrenchOnHeldPart(const TickModel& model, const HandSample& hand, const Wrench& F_D_B) noexcept;
+Wrench wrenchOnHeldPart(const HandModel& model, const HandSample& hand, const Wrench& F_D_B) noexcept;
 
 /// Stage, only if the scene names a delay: the wrench takes effect `delay_ticks` later. What was computed without
 /// usable input takes effect as zero.
-void delayOutput(const TickModel& model, const HandSample& hand, DelayLine& line, Pushes& pushes,
+void delayOutput(const HandModel& model, const HandSample& hand, DelayLine& line, Pushes& pushes,
                  HandWrench& wrench) noexcept;
 inline constexpr StageOf kOutputDelay{delayOutput,
                                       {.name = "output delay",
                                        .parameters = "device.delay_ticks",
                                        .cost = "constant, and a little for each obstacle",
                                        .before_start = true,
-                                       .needs = [](const TickModel& model) { return model.limits.delay_ticks > 0; },
-                                       .reason = [](const TickModel&) { return "device.delay_ticks is set"; }}};
+                                       .needs = [](const HandModel& model) { return model.limits.delay_ticks > 0; },
+                                       .reason = [](const HandModel&) { return "device.delay_ticks is set"; }}};
 
 /// Stage, only if the scene displays no wrench: what was computed goes nowhere; one that is not finite is left for
 /// limitOutput to tell.
-void withholdWrench(const TickModel& model, Pushes& pushes, HandWrench& wrench, Report& report) noexcept;
+void withholdWrench(const HandModel& model, Pushes& pushes, HandWrench& wrench, Report& report) noexcept;
 inline constexpr StageOf kNoWrench{
     withholdWrench,
     {.name = "no wrench",
      .parameters = "feedback.kinesthetic",
      .cost = "constant, and a little for each obstacle",
      .before_start = true,
-     .needs = [](const TickModel& model) { return !model.display_wrench; },
+     .needs = [](const HandModel& model) { return !model.display_wrench; },
      .reason =
-         [](const TickModel&) { return "feedback.kinesthetic is false: contact is computed, nothing is displayed"; }}};
+         [](const HandModel&) { return "feedback.kinesthetic is false: contact is computed, nothing is displayed"; }}};
 
 /// Stage, the last of every scene: the one place that a wrench leaves through.
 ///   Leaves F_D_B (what is sent) and F_H_W (what the hand then feels).
@@ -68,7 +68,7 @@ inline constexpr StageOf kNoWrench{
 ///   Invariants: finite; |force| ≤ max_force; |torque| ≤ max_torque. kForceLimited and kRateLimited are set if and only
 ///   if step 3's factor or one of step 4's changed the wrench; steps 1 and 2 are told by kInputRejected and
 ///   kNonFiniteLatched. That a device has no torque is a property of the device, not an event.
-void limitOutput(const TickModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
+void limitOutput(const HandModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
                  HandWrench& felt, CommandedWrench& command, Report& report) noexcept;
 inline constexpr StageOf kOutputLimits{
     limitOutput,
@@ -76,8 +76,8 @@ inline constexpr StageOf kOutputLimits{
      .parameters = "device.max_force_N, max_torque_Nm, max_force_rate_N_per_s, device.registration",
      .cost = "constant, and a little for each obstacle",
      .before_start = true,
-     .needs = [](const TickModel&) { return true; },
+     .needs = [](const HandModel&) { return true; },
      .reason =
-         [](const TickModel&) { return "always, last: finite, within the device's limits, rising slowly enough"; }}};
+         [](const HandModel&) { return "always, last: finite, within the device's limits, rising slowly enough"; }}};
 
 }  // namespace passung::tick

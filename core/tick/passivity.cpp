@@ -17,7 +17,7 @@ Vec3 certainMotion(const Vec3& step, double quantum, Vec3& ahead) noexcept {
 
 }  // namespace
 
-void observeEnergy(const TickModel& model, const InputGuard& guard, const HandSample& hand, const SentWrench& sent,
+void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSample& hand, const SentWrench& sent,
                    EnergyAccounts& accounts, EnergyRecord& record) noexcept {
     EnergyAccount& account = accounts.energy;
     account.sent.force += sent.last_sent.force;
@@ -51,7 +51,7 @@ void observeEnergy(const TickModel& model, const InputGuard& guard, const HandSa
     record.energy = account.taken_in;
 }
 
-void dampActivity(const TickModel& model, const HandSample& hand, const EnergyAccounts& accounts, HandWrench& wrench,
+void dampActivity(const HandModel& model, const HandSample& hand, const EnergyAccounts& accounts, HandWrench& wrench,
                   Report& report) noexcept {
     const EnergyAccount& account = accounts.energy;
     // On a held tick nothing new is known, and what was asked back is on its way.

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "core/tick/energy_account.h"
+#include "core/tick/hand_model.h"
 #include "core/tick/input_guard.h"
 #include "core/tick/output_stage.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -29,7 +29,7 @@ namespace passung::tick {
 /// and nothing is booked for it.
 ///
 /// Stage, of every scene: E and the handle's velocity, from the sample and what was sent.
-void observeEnergy(const TickModel& model, const InputGuard& guard, const HandSample& hand, const SentWrench& sent,
+void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSample& hand, const SentWrench& sent,
                    EnergyAccounts& accounts, EnergyRecord& record) noexcept;
 inline constexpr StageOf kEnergyAccount{
     observeEnergy,
@@ -37,9 +37,9 @@ inline constexpr StageOf kEnergyAccount{
      .parameters = "",
      .cost = "constant, and a little for each obstacle",
      .before_start = true,
-     .needs = [](const TickModel&) { return true; },
+     .needs = [](const HandModel&) { return true; },
      .reason =
-         [](const TickModel&) {
+         [](const HandModel&) {
              return "always: what the controller takes in and gives out at the handle is recorded";
          }}};
 
@@ -47,16 +47,16 @@ inline constexpr StageOf kEnergyAccount{
 ///   F += -α v,  T += -α ρ² ω,   α = min(-E / (τ (|v|² + ρ² |ω|²)), α_max)
 /// which takes -E back if the handle goes on as it moves; v, ω from sample to sample, τ the tick, ρ = metric_radius,
 /// α_max the scene's. Nothing at rest. After the wrench and its delay, before the output's limits, which may cut it.
-void dampActivity(const TickModel& model, const HandSample& hand, const EnergyAccounts& accounts, HandWrench& wrench,
+void dampActivity(const HandModel& model, const HandSample& hand, const EnergyAccounts& accounts, HandWrench& wrench,
                   Report& report) noexcept;
 inline constexpr StageOf kPassivityController{
     dampActivity,
     {.name = "passivity controller",
      .parameters = "effects.passivity_controller",
      .cost = "constant",
-     .needs = [](const TickModel& model) { return model.effects.passivity_damping > 0.0; },
+     .needs = [](const HandModel& model) { return model.effects.passivity_damping > 0.0; },
      .reason =
-         [](const TickModel&) {
+         [](const HandModel&) {
              return "effects.passivity_controller is set: a damper takes back energy that was given out";
          }}};
 

@@ -49,7 +49,7 @@ contact::QueryRequest penaltyRequest(scene::PenaltyVariant variant) noexcept {
     return {.gradients = false, .load = isWeighted(variant), .every_node = true, .refine = true};
 }
 
-void findContactsAtHand(const TickModel& model, const HandSample& hand, Proxy& proxy, QueryMemory& memory,
+void findContactsAtHand(const HandModel& model, const HandSample& hand, Proxy& proxy, QueryMemory& memory,
                         Pushes& pushes, AreaLoad& load, ContactRecord& record, HandDepth& depth,
                         Report& report) noexcept {
     proxy.X_WG = hand.X_WH;
@@ -93,7 +93,7 @@ PenaltyLoad penaltyLoad(const scene::ContactSpec& contact, const contact::Contac
     return {{scale * all.sum.force, scale * all.sum.torque}, scale};
 }
 
-void renderPenalty(const TickModel& model, const HandSample& hand, const Proxy& proxy, const AreaLoad& load,
+void renderPenalty(const HandModel& model, const HandSample& hand, const Proxy& proxy, const AreaLoad& load,
                    HandVelocity& velocity, Pushes& pushes, HandWrench& wrench) noexcept {
     measureHandVelocity(velocity, hand);
     Wrench F = isWeighted(model.contact.variant)

@@ -4,9 +4,9 @@
 
 #include "core/contact/contact_query.h"
 #include "core/tick/energy_account.h"
+#include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -23,7 +23,7 @@ contact::QueryRequest penaltyRequest(scene::PenaltyVariant variant) noexcept;
 
 /// Stage: contact at the device's pose. Fills the manifold, or the load, by penaltyRequest. The proxy follows the
 /// device: X_WG = X_WH.
-void findContactsAtHand(const TickModel& model, const HandSample& hand, Proxy& proxy, QueryMemory& memory,
+void findContactsAtHand(const HandModel& model, const HandSample& hand, Proxy& proxy, QueryMemory& memory,
                         Pushes& pushes, AreaLoad& load, ContactRecord& record, HandDepth& depth,
                         Report& report) noexcept;
 inline constexpr StageOf kContactsAtHand{
@@ -31,9 +31,9 @@ inline constexpr StageOf kContactsAtHand{
     {.name = "contacts at the hand",
      .parameters = "contact.method, variant, mode, budget_nodes, two_way",
      .cost = "a query of each obstacle, with two_way two",
-     .needs = [](const TickModel& model) { return model.rendersAtHand(); },
+     .needs = [](const HandModel& model) { return model.rendersAtHand(); },
      .reason =
-         [](const TickModel& model) {
+         [](const HandModel& model) {
              return model.contact.two_way
                         ? "contact.method is penalty: forces come from the overlap at the device's own pose; "
                           "contact.two_way: of the held part's points and of the obstacles' points"
@@ -74,14 +74,14 @@ inline constexpr double kLeastCoherence = 0.2;
 /// v is the change from sample to sample over the time between them, so that a held tick, on which the hand only seems
 /// to stand, keeps the last v and the next sample is not taken for twice as fast. After rejected ticks v starts from
 /// zero: what lies between is no motion.
-void renderPenalty(const TickModel& model, const HandSample& hand, const Proxy& proxy, const AreaLoad& load,
+void renderPenalty(const HandModel& model, const HandSample& hand, const Proxy& proxy, const AreaLoad& load,
                    HandVelocity& velocity, Pushes& pushes, HandWrench& wrench) noexcept;
 inline constexpr StageOf kPenaltyWrench{
     renderPenalty,
     {.name = "penalty wrench",
      .parameters = "contact.variant, stiffness_N_per_m, area_stiffness, damping, rotational_damping, two_way",
      .cost = "a little for each contact",
-     .needs = [](const TickModel& model) { return model.rendersAtHand(); },
-     .reason = [](const TickModel&) { return "turns the overlap into force and torque by contact.variant"; }}};
+     .needs = [](const HandModel& model) { return model.rendersAtHand(); },
+     .reason = [](const HandModel&) { return "turns the overlap into force and torque by contact.variant"; }}};
 
 }  // namespace passung::tick

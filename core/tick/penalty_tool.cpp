@@ -41,7 +41,7 @@ motion::Motion solved(Matrix6 A, motion::Motion b) noexcept {
 /// The equation of one tick: penalty_tool.h.
 class ToolBalance {
 public:
-    ToolBalance(const TickModel& model, const HandSample& hand, const Proxy& proxy, const ToolMotion& tool) noexcept
+    ToolBalance(const HandModel& model, const HandSample& hand, const Proxy& proxy, const ToolMotion& tool) noexcept
         : model_(model), X_WH_(hand.X_WH), X_before_(proxy.X_WG), law_(model.contact) {
         const scene::ContactSpec& c = model.contact;
         law_.stiffness = c.penalty_stiffness;
@@ -114,7 +114,7 @@ private:
         return a;
     }
 
-    const TickModel& model_;
+    const HandModel& model_;
     const Pose& X_WH_;
     const Pose X_before_;
     scene::ContactSpec law_;  // of the contacts
@@ -176,7 +176,7 @@ bool makeStep(const ProxyView& view, ToolBalance& balance, const motion::Motion&
 
 }  // namespace
 
-void settleTool(const TickModel& model, const HandSample& hand, Proxy& proxy, ToolMotion& tool, QueryMemory& memory,
+void settleTool(const HandModel& model, const HandSample& hand, Proxy& proxy, ToolMotion& tool, QueryMemory& memory,
                 Pushes& pushes, Report& report) noexcept {
     const ProxyView view{model, proxy, memory, report};
     startTool(view, hand, tool);

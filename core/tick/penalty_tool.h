@@ -1,9 +1,9 @@
 #pragma once
 
 #include "core/tick/energy_account.h"
+#include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -52,7 +52,7 @@ inline constexpr int kToolSteps = 8;
 inline constexpr double kSettled = 1e-8;  // [m], of q/D
 
 /// Stage. proxy.h's record and virtual_coupling.h follow. rt-safe.
-void settleTool(const TickModel& model, const HandSample& hand, Proxy& proxy, ToolMotion& tool, QueryMemory& memory,
+void settleTool(const HandModel& model, const HandSample& hand, Proxy& proxy, ToolMotion& tool, QueryMemory& memory,
                 Pushes& pushes, Report& report) noexcept;
 inline constexpr StageOf kPenaltyTool{
     settleTool,
@@ -60,9 +60,9 @@ inline constexpr StageOf kPenaltyTool{
      .parameters = "contact.coupling, variant, penalty_stiffness_N_per_m, tool_mass_kg, tool_inertia_kg_m2, stiffness, "
                    "damping, mode, budget_nodes, two_way",
      .cost = "a few queries of each obstacle; bound: kToolSteps",
-     .needs = [](const TickModel& model) { return model.hasFieldProxyOf(scene::ContactMethod::Penalty); },
+     .needs = [](const HandModel& model) { return model.hasFieldProxyOf(scene::ContactMethod::Penalty); },
      .reason =
-         [](const TickModel& model) {
+         [](const HandModel& model) {
              return model.contact.coupling == scene::PenaltyCoupling::Virtual
                         ? "contact.coupling is virtual: a tool with mass between the hand's spring and the "
                           "contacts' penalty"

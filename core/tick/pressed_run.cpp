@@ -6,9 +6,9 @@
 
 #include "core/surface/nearest_faces.h"
 #include "core/tick/closed_form_proxy.h"
+#include "core/tick/hand_model.h"
+#include "core/tick/hand_state.h"
 #include "core/tick/obstacle_query.h"
-#include "core/tick/tick_model.h"
-#include "core/tick/tick_state.h"
 
 namespace passung::tick {
 
@@ -35,7 +35,7 @@ Vec3 wayToContact(const Pose& X_WG, ClosedFormMemory& memory) {
 }
 
 /// The motion of the held part that ends pressed into the nearest obstacle.
-Vec3 wayToContact(const TickModel& model, TickState& state) {
+Vec3 wayToContact(const HandModel& model, HandState& state) {
     if (model.obstacles.empty()) return Vec3(0.02, 0.0, 0.0);
     if (model.hasClosedForm()) return wayToContact(model.X_WG_start, state);
     if (model.hasSurfaces()) {

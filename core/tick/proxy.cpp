@@ -56,20 +56,20 @@ void note(int count, std::uint32_t& most) noexcept { most = std::max(most, stati
 
 }  // namespace
 
-Pose moved(const TickModel& model, const Pose& pose, const motion::Motion& u) noexcept {
+Pose moved(const HandModel& model, const Pose& pose, const motion::Motion& u) noexcept {
     Pose result{rotationFromVector(u.tail<3>() / model.metric_radius) * pose.q, pose.p + u.head<3>()};
     result.q.normalize();
     return result;
 }
 
-motion::Motion unconstrainedMotion(const TickModel& model, const Pose& X_WG, const Pose& X_WH) noexcept {
+motion::Motion unconstrainedMotion(const HandModel& model, const Pose& X_WG, const Pose& X_WH) noexcept {
     motion::Motion u;
     u.head<3>() = X_WH.p - X_WG.p;
     u.tail<3>() = model.metric_radius * rotationVector(X_WH.q * X_WG.q.conjugate());
     return u;
 }
 
-double longestPath(const TickModel& model, const motion::Motion& u) noexcept {
+double longestPath(const HandModel& model, const motion::Motion& u) noexcept {
     return u.head<3>().norm() + u.tail<3>().norm() / model.metric_radius * model.shell->reach();
 }
 
@@ -174,7 +174,7 @@ bool startProxy(const MovingProxy& moving) noexcept {
     return lookAround(moving, proxy.X_WG, reach, reach);
 }
 
-double nextReach(const TickModel& model, double last_motion) noexcept {
+double nextReach(const HandModel& model, double last_motion) noexcept {
     const double s = model.finest_cell;
     return std::clamp(kReachGrowth * last_motion, kShortestReach * s, kLongestStep * s);
 }
@@ -203,13 +203,13 @@ void noteLag(const MovingProxy& moving, bool arrived) noexcept {
     moving.proxy.lag = longestPath(moving.model, unconstrainedMotion(moving.model, followed, moving.hand.X_WH));
 }
 
-motion::Surroundings surroundings(const TickModel& model, const Proxy& proxy) noexcept {
+motion::Surroundings surroundings(const HandModel& model, const Proxy& proxy) noexcept {
     return {proxy.manifold, proxy.X_WG.p, model.metric_radius, -model.margins.keep};
 }
 
 AllowedMotion allowedMotion(const MovingProxy& moving, const motion::Motion& wanted,
                             const motion::Surroundings& around) noexcept {
-    const TickModel& model = moving.model;
+    const HandModel& model = moving.model;
     Report& report = moving.report;
     std::array<std::uint32_t, 6> places;
     const auto likely = likelyContacts(moving, places);
@@ -234,9 +234,9 @@ AllowedMotion allowedMotion(const MovingProxy& moving, const motion::Motion& wan
     return allowed;
 }
 
-void followHand(const TickModel&, const HandSample& hand, Proxy& proxy) noexcept { proxy.X_WG = hand.X_WH; }
+void followHand(const HandModel&, const HandSample& hand, Proxy& proxy) noexcept { proxy.X_WG = hand.X_WH; }
 
-void filterProxy(const TickModel& model, const HandSample& hand, ProxyFilter& filter, Proxy& proxy, QueryMemory& memory,
+void filterProxy(const HandModel& model, const HandSample& hand, ProxyFilter& filter, Proxy& proxy, QueryMemory& memory,
                  Report& report) noexcept {
     if (hand.relocated) filter.has_last_proxy = false;  // the proxy was set to the hand
     const double alpha = 1.0 - std::exp(-2.0 * std::numbers::pi * model.contact.proxy_filter * kTickSeconds);
@@ -257,14 +257,14 @@ void filterProxy(const TickModel& model, const HandSample& hand, ProxyFilter& fi
     filter.has_last_proxy = true;
 }
 
-void describeProxy(const TickModel&, const Proxy& proxy, ContactRecord& record) noexcept {
+void describeProxy(const HandModel&, const Proxy& proxy, ContactRecord& record) noexcept {
     record.proxy_depth = overlap(proxy);
     record.proxy_lag = proxy.lag;
     const contact::ContactPoint* const end = proxy.manifold.end() - std::min(proxy.cuts, proxy.manifold.size());
     record.contacts = static_cast<std::uint32_t>(std::count_if(proxy.manifold.begin(), end, isInside));
 }
 
-void measureHandDepth(const TickModel& model, const HandSample& hand, QueryMemory& memory, HandDepth& depth,
+void measureHandDepth(const HandModel& model, const HandSample& hand, QueryMemory& memory, HandDepth& depth,
                       Report& report) noexcept {
     memory.scratch.clear();
     const contact::QueryAnswer answer = queryObstacles(model, hand.X_WH, {.collect_below = -1e300}, memory.workspace,

@@ -2,9 +2,9 @@
 
 #include "core/motion/constrained_motion.h"
 #include "core/tick/energy_account.h"
+#include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -21,17 +21,17 @@ inline constexpr std::uint32_t kFieldBudget = 12000;
 inline constexpr std::uint32_t kLooksBetween = 4;  // that the looks between (cutsCorner) take together, at most
 
 /// `pose` moved by `u`.
-Pose moved(const TickModel& model, const Pose& pose, const motion::Motion& u) noexcept;
+Pose moved(const HandModel& model, const Pose& pose, const motion::Motion& u) noexcept;
 
 /// u = (x_H - x_G, ρ log(R_H R_Gᵀ)): what takes the proxy to the hand.
-motion::Motion unconstrainedMotion(const TickModel& model, const Pose& X_WG, const Pose& X_WH) noexcept;
+motion::Motion unconstrainedMotion(const HandModel& model, const Pose& X_WG, const Pose& X_WH) noexcept;
 
 /// No point of the shell moves farther than this [m].
-double longestPath(const TickModel& model, const motion::Motion& u) noexcept;
+double longestPath(const HandModel& model, const motion::Motion& u) noexcept;
 
 /// What the methods look at the proxy by.
 struct ProxyView {
-    const TickModel& model;
+    const HandModel& model;
     Proxy& proxy;
     QueryMemory& memory;
     Report& report;
@@ -106,7 +106,7 @@ void surveyContacts(const ProxyView& view, const Pose& X_WG) noexcept;
 bool startProxy(const MovingProxy& moving) noexcept;
 
 /// How far around the proxy to look next, from how far it went in the last tick [m].
-double nextReach(const TickModel& model, double last_motion) noexcept;
+double nextReach(const HandModel& model, double last_motion) noexcept;
 
 /// Takes the proxy straight to the hand, `path` away, through room that is proven to be free. False, and it stays, if
 /// it would overlap there by more than `accepted`.
@@ -118,7 +118,7 @@ void noteFollowed(Proxy& proxy, const Pose& X_WH, double share) noexcept;
 /// The tick's motion has ended; `arrived`: nothing is left of it. Notes what it lags behind.
 void noteLag(const MovingProxy& moving, bool arrived) noexcept;
 
-motion::Surroundings surroundings(const TickModel& model, const Proxy& proxy) noexcept;
+motion::Surroundings surroundings(const HandModel& model, const Proxy& proxy) noexcept;
 
 /// What the contacts, and friction, leave of a motion. Begins with the contacts that held the one before.
 struct AllowedMotion {
@@ -129,13 +129,13 @@ AllowedMotion allowedMotion(const MovingProxy& moving, const motion::Motion& wan
                             const motion::Surroundings& around) noexcept;
 
 /// Stage of a scene without obstacles: the held part is where the hand is.
-void followHand(const TickModel& model, const HandSample& hand, Proxy& proxy) noexcept;
+void followHand(const HandModel& model, const HandSample& hand, Proxy& proxy) noexcept;
 inline constexpr StageOf kFreeHand{followHand,
                                    {.name = "free hand",
                                     .parameters = "",
                                     .cost = "constant",
-                                    .needs = [](const TickModel& model) { return !model.hasObstacles(); },
-                                    .reason = [](const TickModel&) { return "the scene has no obstacle"; }}};
+                                    .needs = [](const HandModel& model) { return !model.hasObstacles(); },
+                                    .reason = [](const HandModel&) { return "the scene has no obstacle"; }}};
 
 // Stages that follow the proxy's motion.
 
@@ -148,7 +148,7 @@ struct ProxyFilter {
 /// Low-pass (only if the scene names its corner f_c), while in contact:
 ///   G_k = G_{k-1} ⊕ α (G* ⊖ G_{k-1}),  α = 1 - exp(-2π f_c T); dropped for a tick where it would cost overlap, or
 /// more nodes than a budget leaves.
-void filterProxy(const TickModel& model, const HandSample& hand, ProxyFilter& filter, Proxy& proxy, QueryMemory& memory,
+void filterProxy(const HandModel& model, const HandSample& hand, ProxyFilter& filter, Proxy& proxy, QueryMemory& memory,
                  Report& report) noexcept;
 inline constexpr StageOf kProxyFilter{
     filterProxy,
@@ -156,31 +156,31 @@ inline constexpr StageOf kProxyFilter{
      .parameters = "contact.proxy_filter_hz",
      .cost = "in contact one query of each obstacle, at most two",
      .needs =
-         [](const TickModel& model) {
+         [](const HandModel& model) {
              return model.hasFieldProxy() && model.contact.proxy_filter > 0.0 &&
                     model.contact.method != scene::ContactMethod::Penalty;
          },
-     .reason = [](const TickModel&) { return "contact.proxy_filter_hz is set: a low-pass of the proxy in contact"; }}};
+     .reason = [](const HandModel&) { return "contact.proxy_filter_hz is set: a low-pass of the proxy in contact"; }}};
 
 /// The depth, the number of contacts and the lag, for the record.
-void describeProxy(const TickModel& model, const Proxy& proxy, ContactRecord& record) noexcept;
+void describeProxy(const HandModel& model, const Proxy& proxy, ContactRecord& record) noexcept;
 inline constexpr StageOf kProxyRecord{
     describeProxy,
     {.name = "proxy record",
      .parameters = "",
      .cost = "a little for each contact",
-     .needs = [](const TickModel& model) { return model.hasFieldProxy(); },
-     .reason = [](const TickModel&) { return "overlap and contacts at the proxy, and its lag, for the record"; }}};
+     .needs = [](const HandModel& model) { return model.hasFieldProxy(); },
+     .reason = [](const HandModel&) { return "overlap and contacts at the proxy, and its lag, for the record"; }}};
 
 /// Depth of the held part at the hand's pose: only for the record, an extra query.
-void measureHandDepth(const TickModel& model, const HandSample& hand, QueryMemory& memory, HandDepth& depth,
+void measureHandDepth(const HandModel& model, const HandSample& hand, QueryMemory& memory, HandDepth& depth,
                       Report& report) noexcept;
 inline constexpr StageOf kHandDepth{
     measureHandDepth,
     {.name = "hand depth",
      .parameters = "contact.record_hand_depth",
      .cost = "a query of each obstacle, with two_way two",
-     .needs = [](const TickModel& model) { return model.hasFieldProxy() && model.record_hand_depth; },
-     .reason = [](const TickModel&) { return "the overlap at the device's pose is measured and recorded"; }}};
+     .needs = [](const HandModel& model) { return model.hasFieldProxy() && model.record_hand_depth; },
+     .reason = [](const HandModel&) { return "the overlap at the device's pose is measured and recorded"; }}};
 
 }  // namespace passung::tick

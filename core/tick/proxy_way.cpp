@@ -5,7 +5,7 @@
 
 namespace passung::tick {
 
-ProxyWay::ProxyWay(const TickModel& model) noexcept : turn_scale_(model.shell->reach() / model.metric_radius) {}
+ProxyWay::ProxyWay(const HandModel& model) noexcept : turn_scale_(model.shell->reach() / model.metric_radius) {}
 
 motion::Motion ProxyWay::scaled(const motion::Motion& u) const noexcept {
     motion::Motion v = u;
@@ -33,7 +33,7 @@ double ProxyWay::bentBy(const motion::Motion& next) const noexcept {
     return farthest;
 }
 
-bool ProxyWay::goesOn(const TickModel& model, const motion::Motion& next, double length) const noexcept {
+bool ProxyWay::goesOn(const HandModel& model, const motion::Motion& next, double length) const noexcept {
     const double bend = bentBy(next), s = model.finest_cell;
     return bend <= model.margins.relieve || (length > kLongestStep * s && bend <= kBent * s);
 }

@@ -3,8 +3,8 @@
 #include <array>
 
 #include "core/motion/constrained_motion.h"
+#include "core/tick/hand_model.h"
 #include "core/tick/proxy.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -21,14 +21,14 @@ inline constexpr int kPlaces = 7;
 /// one, up to a bend of kBent, if the line does not overlap at kPlaces places.
 class ProxyWay {
 public:
-    explicit ProxyWay(const TickModel& model) noexcept;
+    explicit ProxyWay(const HandModel& model) noexcept;
 
     void add(const motion::Motion& u) noexcept;
     double length() const noexcept { return length_; }
     /// How far from the way the straight line would lie if the way ended after `next`.
     double bentBy(const motion::Motion& next) const noexcept;
     /// Whether it may go on with `next`, the beginning of a motion of `length`.
-    bool goesOn(const TickModel& model, const motion::Motion& next, double length) const noexcept;
+    bool goesOn(const HandModel& model, const motion::Motion& next, double length) const noexcept;
 
 private:
     static constexpr std::size_t kMostJoints = 16;

@@ -1,7 +1,7 @@
 #include "core/tick/scene_sequence.h"
 
-#include "core/tick/tick_model.h"
-#include "core/tick/tick_state.h"
+#include "core/tick/hand_model.h"
+#include "core/tick/hand_state.h"
 
 namespace passung::tick {
 
@@ -31,13 +31,13 @@ SceneModels::~SceneModels() = default;
 
 std::size_t SceneModels::size() const noexcept { return models_.size(); }
 
-const TickModel& SceneModels::operator[](std::size_t i) const noexcept { return models_[i]; }
+const HandModel& SceneModels::operator[](std::size_t i) const noexcept { return models_[i]; }
 
 std::span<const Stage> SceneModels::stages(std::size_t i) const noexcept { return models_[i].stages; }
 
 std::size_t SceneModels::memoryBytes(std::size_t i) const noexcept {
     std::size_t bytes = 0;
-    const TickModel& model = models_[i];
+    const HandModel& model = models_[i];
     if (model.hasSurfaces()) bytes += model.held_surface->memoryBytes() + model.obstacle_surface->memoryBytes();
     for (const auto& solid : model.solids) bytes += bytesOf(solid);
     return bytes;
@@ -56,15 +56,15 @@ std::uint64_t SceneSequence::hash() const noexcept { return states_[current_].ha
 
 std::vector<PairAccount> SceneSequence::pairs() const {
     std::vector<PairAccount> all;
-    for (const TickState& state : states_) all.insert(all.end(), state.pairs.begin(), state.pairs.end());
+    for (const HandState& state : states_) all.insert(all.end(), state.pairs.begin(), state.pairs.end());
     return all;
 }
 
 TickOutput SceneSequence::step(const DeviceReading& reading) noexcept {
     if (engaged_) rendered_ += reading.periods;
     if (engaged_ && rendered_ >= turns_[current_].periods && current_ + 1 < turns_.size()) {
-        const TickState& before = states_[current_];
-        TickState& next = states_[++current_];
+        const HandState& before = states_[current_];
+        HandState& next = states_[++current_];
         next.tick = before.tick;
         next.hash = before.hash;
         engaged_ = false;

@@ -4,8 +4,8 @@
 
 namespace passung::tick {
 
-struct TickModel;
-struct TickState;
+struct HandModel;
+struct HandState;
 struct TickFrame;
 
 /// A whole that is the product of its parts, each a struct of its own: a reference to the whole is one to any of them,
@@ -20,8 +20,8 @@ struct StageCard {
     const char* parameters;                   // keys of the scene that it follows; empty: none
     const char* cost;                         // in a tick
     bool before_start = false;                // runs also while the start gate is closed
-    bool (*needs)(const TickModel&);          // whether a scene has what it is for
-    const char* (*reason)(const TickModel&);  // why the scene has it
+    bool (*needs)(const HandModel&);          // whether a scene has what it is for
+    const char* (*reason)(const HandModel&);  // why the scene has it
 };
 
 namespace declared {
@@ -40,7 +40,7 @@ template <class Argument>
 inline constexpr bool kIsPart = [] {
     using Part = std::remove_cvref_t<Argument>;
     constexpr bool whole =
-        std::is_same_v<Part, TickModel> || std::is_same_v<Part, TickState> || std::is_same_v<Part, TickFrame>;
+        std::is_same_v<Part, HandModel> || std::is_same_v<Part, HandState> || std::is_same_v<Part, TickFrame>;
     constexpr bool reads = std::is_const_v<std::remove_reference_t<Argument>>;
     return std::is_lvalue_reference_v<Argument> && !whole && (reads || !kOnlyRead<Part>);
 }();
@@ -48,49 +48,49 @@ inline constexpr bool kIsPart = [] {
 }  // namespace declared
 
 /// One stage of the tick, declared once. Its function takes the model, a const reference to each part that it reads and
-/// a reference to each that it owns or hands on; it sees nothing else. The parts are those of TickState, which last,
+/// a reference to each that it owns or hands on; it sees nothing else. The parts are those of HandState, which last,
 /// and of TickFrame, which die with the tick. An effect that hums:
 ///
 ///   struct Humming { double phase = 0.0; };                                               // its own state
-///   void renderHum(const TickModel&, const HandSample&, Humming&, HandWrench&) noexcept;  // reads, owns, hands on
+///   void renderHum(const HandModel&, const HandSample&, Humming&, HandWrench&) noexcept;  // reads, owns, hands on
 ///   inline constexpr StageOf kHum{renderHum, {.name = "hum", .parameters = "effects.hum", // its card
 ///                                             .cost = "constant", .needs = ..., .reason = ...}};
 ///
 /// goes into hum.h and hum.cpp, in the room's CMakeLists.txt. Then
-///   - scene::Effects (core/scene/scene_spec.h) gets its parameters, a Hum, which it finds in TickModel::effects,
-///   - tick_state.h the header, TickState the part Humming and AllStages, at its place in the order, kHum,
+///   - scene::Effects (core/scene/scene_spec.h) gets its parameters, a Hum, which it finds in HandModel::effects,
+///   - hand_state.h the header, HandState the part Humming and AllStages, at its place in the order, kHum,
 ///   - tests/support/every_effect.h the effect: stage_test.cpp says whether the declaration is true.
-/// Memory that depends on the scene is sized in makeState (tick_state.cpp).
+/// Memory that depends on the scene is sized in makeState (hand_state.cpp).
 template <class... Argument>
 struct StageOf {
     static_assert((declared::kIsPart<Argument> && ...), "a stage takes parts by reference, never a whole");
 
-    void (*compute)(const TickModel&, Argument...) noexcept;
+    void (*compute)(const HandModel&, Argument...) noexcept;
     StageCard card;
 
     /// Runs it on its parts of `state` and `frame`. rt-safe.
-    void operator()(const TickModel& model, TickState& state, TickFrame& frame) const noexcept {
+    void operator()(const HandModel& model, HandState& state, TickFrame& frame) const noexcept {
         compute(model, partOf<Argument>(state, frame)...);
     }
 
 private:
     template <class Wanted>
-    static Wanted partOf(TickState& state, TickFrame& frame) noexcept {
-        if constexpr (std::is_base_of_v<std::remove_cvref_t<Wanted>, TickState>)
+    static Wanted partOf(HandState& state, TickFrame& frame) noexcept {
+        if constexpr (std::is_base_of_v<std::remove_cvref_t<Wanted>, HandState>)
             return state;
         else
             return frame;
     }
 };
 template <class... Argument>
-StageOf(void (*)(const TickModel&, Argument...) noexcept, StageCard) -> StageOf<Argument...>;
+StageOf(void (*)(const HandModel&, Argument...) noexcept, StageCard) -> StageOf<Argument...>;
 
 /// A stage of one scene. `reason` says why this scene has it.
 struct Stage {
     const char* name;
     const char* reason;
     bool before_start;  // runs also while the start gate is closed
-    void (*run)(const TickModel&, TickState&, TickFrame&) noexcept;
+    void (*run)(const HandModel&, HandState&, TickFrame&) noexcept;
 };
 
 /// Stages in the order of the tick.

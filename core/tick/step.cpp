@@ -3,8 +3,8 @@
 #include <bit>
 #include <cmath>
 
-#include "core/tick/tick_model.h"
-#include "core/tick/tick_state.h"
+#include "core/tick/hand_model.h"
+#include "core/tick/hand_state.h"
 
 namespace passung::tick {
 
@@ -58,7 +58,7 @@ void store(std::array<float, 4>& into, const Quat& q) noexcept {
 
 }  // namespace
 
-TickOutput step(const TickModel& model, TickState& state, const DeviceReading& reading,
+TickOutput step(const HandModel& model, HandState& state, const DeviceReading& reading,
                 const StageWatch* watch) noexcept {
     TickFrame frame;
     frame.reading = reading;

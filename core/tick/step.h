@@ -27,11 +27,11 @@ struct StageWatch {
     void* context;
 };
 
-/// One tick of the haptic loop: a plain function over values (tick_model.h, tick_state.h). Same model, state and
+/// One tick of the haptic loop: a plain function over values (hand_model.h, hand_state.h). Same model, state and
 /// reading: same bits.
 ///   It walks the model's stages; each sees the parts of state and frame that it declares (stage.h). Nothing allocates,
 ///   locks or throws, and every loop has a bound. rt-safe.
-TickOutput step(const TickModel& model, TickState& state, const DeviceReading& reading,
+TickOutput step(const HandModel& model, HandState& state, const DeviceReading& reading,
                 const StageWatch* watch = nullptr) noexcept;
 
 /// The record of a tick: inputs exact, outputs as 32-bit floats. rt-safe.

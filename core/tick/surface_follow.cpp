@@ -9,7 +9,7 @@ namespace passung::tick {
 namespace {
 
 /// In place of the pushes so far: K λ along each row's normal (contact_energy.h).
-void noteRows(const TickModel& model, const surface::SurfaceProxy& surface, Pushes& pushes) noexcept {
+void noteRows(const HandModel& model, const surface::SurfaceProxy& surface, Pushes& pushes) noexcept {
     clearPushes(pushes);
     const double K = model.contact.stiffness;
     const double turn = model.contact.rotational_stiffness / (model.metric_radius * model.metric_radius);
@@ -27,7 +27,7 @@ void noteRows(const TickModel& model, const surface::SurfaceProxy& surface, Push
 
 }  // namespace
 
-SurfaceFollow surfaceFollow(const TickModel& model) {
+SurfaceFollow surfaceFollow(const HandModel& model) {
     SurfaceFollow follow;
     follow.surface.emplace(
         *model.held_surface, *model.obstacle_surface,
@@ -37,7 +37,7 @@ SurfaceFollow surfaceFollow(const TickModel& model) {
     return follow;
 }
 
-void followOnSurface(const TickModel& model, const HandSample& hand, Proxy& proxy, SurfaceFollow& follow,
+void followOnSurface(const HandModel& model, const HandSample& hand, Proxy& proxy, SurfaceFollow& follow,
                      Pushes& pushes, Report& report) noexcept {
     // A spring from the old place would throw the hand across the room.
     if (hand.relocated) follow.surface->place(hand.X_WH);
@@ -55,13 +55,13 @@ void followOnSurface(const TickModel& model, const HandSample& hand, Proxy& prox
     noteRows(model, *follow.surface, pushes);
 }
 
-void describeSurface(const TickModel&, const SurfaceFollow& follow, ContactRecord& record) noexcept {
+void describeSurface(const HandModel&, const SurfaceFollow& follow, ContactRecord& record) noexcept {
     record.proxy_depth = 0.0;
     record.proxy_gap = follow.gap;
     record.contacts = follow.contacts;
 }
 
-void measureSurfaceDepth(const TickModel&, const HandSample& hand, const SurfaceFollow& follow,
+void measureSurfaceDepth(const HandModel&, const HandSample& hand, const SurfaceFollow& follow,
                          HandDepth& depth) noexcept {
     depth.hand_depth = follow.surface->handDepth(hand.X_WH);
 }

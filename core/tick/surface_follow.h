@@ -4,9 +4,9 @@
 
 #include "core/surface/surface_proxy.h"
 #include "core/tick/energy_account.h"
+#include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -31,19 +31,19 @@ struct SurfaceFollow {
 };
 
 /// With what is near the start pose found out. `model` outlives it.
-SurfaceFollow surfaceFollow(const TickModel& model);
+SurfaceFollow surfaceFollow(const HandModel& model);
 
 /// Stages, in this order. rt-safe.
-void followOnSurface(const TickModel& model, const HandSample& hand, Proxy& proxy, SurfaceFollow& follow,
+void followOnSurface(const HandModel& model, const HandSample& hand, Proxy& proxy, SurfaceFollow& follow,
                      Pushes& pushes, Report& report) noexcept;
 inline constexpr StageOf kSurfaceProxy{
     followOnSurface,
     {.name = "surface proxy",
      .parameters = "contact.method, geometry, stiffness_N_per_m, rotational_stiffness",
      .cost = "at most 38 000 units of work a tick, about 0.7 ms; what is left goes on in the next tick",
-     .needs = [](const TickModel& model) { return model.hasSurfaces(); },
+     .needs = [](const HandModel& model) { return model.hasSurfaces(); },
      .reason =
-         [](const TickModel& model) {
+         [](const HandModel& model) {
              return model.contact.method == scene::ContactMethod::GodObject
                         ? "contact.method is god_object and contact is that of surfaces: the proxy follows the hand as "
                           "far as no triangles meet; no distance field, no points"
@@ -52,24 +52,24 @@ inline constexpr StageOf kSurfaceProxy{
          }}};
 
 /// The proven gap, and the contacts that hold the proxy.
-void describeSurface(const TickModel& model, const SurfaceFollow& follow, ContactRecord& record) noexcept;
+void describeSurface(const HandModel& model, const SurfaceFollow& follow, ContactRecord& record) noexcept;
 inline constexpr StageOf kSurfaceRecord{
     describeSurface,
     {.name = "surface record",
      .parameters = "",
      .cost = "constant",
-     .needs = [](const TickModel& model) { return model.hasSurfaces(); },
-     .reason = [](const TickModel&) { return "the proven gap and the contacts at the proxy, for the record"; }}};
+     .needs = [](const HandModel& model) { return model.hasSurfaces(); },
+     .reason = [](const HandModel&) { return "the proven gap and the contacts at the proxy, for the record"; }}};
 
 /// How far the hand's pose lies beyond the contact that it presses most.
-void measureSurfaceDepth(const TickModel& model, const HandSample& hand, const SurfaceFollow& follow,
+void measureSurfaceDepth(const HandModel& model, const HandSample& hand, const SurfaceFollow& follow,
                          HandDepth& depth) noexcept;
 inline constexpr StageOf kSurfaceDepth{
     measureSurfaceDepth,
     {.name = "surface hand depth",
      .parameters = "contact.record_hand_depth",
      .cost = "a little for each contact that holds",
-     .needs = [](const TickModel& model) { return model.hasSurfaces() && model.record_hand_depth; },
-     .reason = [](const TickModel&) { return "the way from proxy to hand along what holds it is recorded"; }}};
+     .needs = [](const HandModel& model) { return model.hasSurfaces() && model.record_hand_depth; },
+     .reason = [](const HandModel&) { return "the way from proxy to hand along what holds it is recorded"; }}};
 
 }  // namespace passung::tick

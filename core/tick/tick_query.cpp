@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/tick/hand_model.h"
+#include "core/tick/hand_state.h"
 #include "core/tick/obstacle_query.h"
 #include "core/tick/penalty.h"
 #include "core/tick/proxy.h"
-#include "core/tick/tick_model.h"
-#include "core/tick/tick_state.h"
 
 namespace passung::tick {
 
@@ -21,8 +21,8 @@ TickQuery::TickQuery(const scene::Scene& scene, double area_stiffness) : models_
 TickQuery::~TickQuery() = default;
 
 QueryReading TickQuery::at(const Pose& X_WS) noexcept {
-    const TickModel& model = models_[0];
-    TickState& state = states_[0];
+    const HandModel& model = models_[0];
+    HandState& state = states_[0];
     TickFrame frame;
     frame.X_WH = X_WS;
     if (!model.contact.rendersAtHand()) {
@@ -36,8 +36,8 @@ QueryReading TickQuery::at(const Pose& X_WS) noexcept {
 }
 
 double TickQuery::distanceAt(const Pose& X_WS) noexcept {
-    const TickModel& model = models_[0];
-    TickState& state = states_[0];
+    const HandModel& model = models_[0];
+    HandState& state = states_[0];
     contact::QueryRequest request = penaltyRequest(model.contact.variant);
     request.search_below = std::numeric_limits<double>::infinity();
     state.scratch.clear();

@@ -15,19 +15,19 @@ Wrench sum(double a, const Wrench& x, double b, const Wrench& y) noexcept {
 }
 
 /// |F| of the header.
-double sizeOf(const TickModel& model, const Wrench& wrench) noexcept {
+double sizeOf(const HandModel& model, const Wrench& wrench) noexcept {
     return std::max(wrench.force.norm(), wrench.torque.norm() / model.reach);
 }
 
 /// s of the header.
-double impactSpeed(const TickModel& model, const Ringing& ringing, const HandSample& hand, const Wrench& F) noexcept {
+double impactSpeed(const HandModel& model, const Ringing& ringing, const HandSample& hand, const Wrench& F) noexcept {
     const Twist V = twistBetween(ringing.X_WH_last, hand.X_WH, hand.sample_periods);
     return std::max(0.0, -(F.force.dot(V.v) + F.torque.dot(V.w)) / sizeOf(model, F));
 }
 
 }  // namespace
 
-void renderTransients(const TickModel& model, const HandSample& hand, const ContactRecord& contacts, Ringing& ringing,
+void renderTransients(const HandModel& model, const HandSample& hand, const ContactRecord& contacts, Ringing& ringing,
                       HandWrench& wrench) noexcept {
     if (!hand.input_usable) {
         ringing = Ringing{};

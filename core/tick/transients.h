@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/tick/hand_model.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -34,15 +34,15 @@ struct Ringing {
 ///
 /// Stage, only if the scene names the effect: after the contact's wrench, before its delay, so that the energy account,
 /// the passivity controller and the output's limits see it as part of the wrench.
-void renderTransients(const TickModel& model, const HandSample& hand, const ContactRecord& contacts, Ringing& ringing,
+void renderTransients(const HandModel& model, const HandSample& hand, const ContactRecord& contacts, Ringing& ringing,
                       HandWrench& wrench) noexcept;
 inline constexpr StageOf kTransients{
     renderTransients,
     {.name = "contact transients",
      .parameters = "effects.transients",
      .cost = "constant",
-     .needs = [](const TickModel& model) { return model.effects.transients.amplitude > 0.0 && model.hasObstacles(); },
+     .needs = [](const HandModel& model) { return model.effects.transients.amplitude > 0.0 && model.hasObstacles(); },
      .reason =
-         [](const TickModel&) { return "effects.transients is set: a decaying vibration is added at every impact"; }}};
+         [](const HandModel&) { return "effects.transients is set: a decaying vibration is added at every impact"; }}};
 
 }  // namespace passung::tick

@@ -36,7 +36,7 @@ void measureRates(Stretch& stretch, const HandSample& hand, const Vec3& e, const
 
 }  // namespace
 
-void renderCoupling(const TickModel& model, const HandSample& hand, const Proxy& proxy, Stretch& stretch,
+void renderCoupling(const HandModel& model, const HandSample& hand, const Proxy& proxy, Stretch& stretch,
                     HandWrench& wrench) noexcept {
     const Vec3 e = proxy.X_WG.p - hand.X_WH.p;
     const Vec3 psi = rotationVector(proxy.X_WG.q * hand.X_WH.q.conjugate());

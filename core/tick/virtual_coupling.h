@@ -1,8 +1,8 @@
 #pragma once
 
+#include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -24,14 +24,14 @@ struct Stretch {
 /// braked. It may not pull the hand into the surface it leaves: where the damper would turn F against e (T against ψ),
 /// that part is dropped. Limit cases: a proxy at rest gives ė = -v_H, the usual wall damper; e = 0 gives F = 0, also in
 /// the tick after contact.
-void renderCoupling(const TickModel& model, const HandSample& hand, const Proxy& proxy, Stretch& stretch,
+void renderCoupling(const HandModel& model, const HandSample& hand, const Proxy& proxy, Stretch& stretch,
                     HandWrench& wrench) noexcept;
 inline constexpr StageOf kVirtualCoupling{
     renderCoupling,
     {.name = "virtual coupling",
      .parameters = "contact.stiffness_N_per_m, rotational_stiffness, damping, rotational_damping",
      .cost = "constant",
-     .needs = [](const TickModel& model) { return model.hasProxy(); },
-     .reason = [](const TickModel&) { return "spring and damper between proxy and hand"; }}};
+     .needs = [](const HandModel& model) { return model.hasProxy(); },
+     .reason = [](const HandModel&) { return "spring and damper between proxy and hand"; }}};
 
 }  // namespace passung::tick

@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "core/base/random.h"
+#include "core/tick/hand_state.h"
 #include "core/tick/obstacle_query.h"
 #include "core/tick/proxy.h"
 #include "core/tick/step.h"
-#include "core/tick/tick_state.h"
 #include "study/person/simulated_person.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/disk_store.h"
@@ -33,16 +33,16 @@ QueryClock query_clock;
 
 // The linker sends the tick's calls of tick::queryObstacles to `timed` (CMakeLists.txt): the tick has no clock.
 namespace passung::tick {
-contact::QueryAnswer real(const TickModel& model, const Pose& X_WS, contact::QueryRequest request,
+contact::QueryAnswer real(const HandModel& model, const Pose& X_WS, contact::QueryRequest request,
                           contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
                           std::span<ObstaclePush> pushes, std::span<PairCertificates> known) noexcept
     asm("__real_" PASSUNG_QUERY_SYMBOL);
-contact::QueryAnswer timed(const TickModel& model, const Pose& X_WS, contact::QueryRequest request,
+contact::QueryAnswer timed(const HandModel& model, const Pose& X_WS, contact::QueryRequest request,
                            contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
                            std::span<ObstaclePush> pushes, std::span<PairCertificates> known) noexcept
     asm("__wrap_" PASSUNG_QUERY_SYMBOL);
 
-contact::QueryAnswer timed(const TickModel& model, const Pose& X_WS, contact::QueryRequest request,
+contact::QueryAnswer timed(const HandModel& model, const Pose& X_WS, contact::QueryRequest request,
                            contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
                            std::span<ObstaclePush> pushes, std::span<PairCertificates> known) noexcept {
     if (!query_clock.running) return real(model, X_WS, request, workspace, manifold, pushes, known);
@@ -105,7 +105,7 @@ public:
         std::vector<double> best(records_.size(), kNotGiven);
         const double clock = clockCost();
         for (int repetition = 0; repetition < repetitions; ++repetition) {
-            tick::TickState state = tick::makeState(model_);
+            tick::HandState state = tick::makeState(model_);
             for (std::size_t i = 0; i < records_.size(); ++i) {
                 query_clock = {.running = without_queries};
                 const Stopwatch watch;
@@ -128,7 +128,7 @@ public:
     std::vector<double> motionTimes(int repetitions, double& contacts) {
         std::vector<double> times;
         double sum = 0.0;
-        tick::TickState state = tick::makeState(model_), wide = tick::makeState(model_);
+        tick::HandState state = tick::makeState(model_), wide = tick::makeState(model_);
         contact::ContactManifold nearest(kMostContacts);
         motion::Motion wanted_before = motion::Motion::Zero();
         const double clock = clockCost();
@@ -171,7 +171,7 @@ private:
         for (std::size_t i = 0; i < count; ++i) nearest.tryPush(points[i]);
     }
 
-    tick::TickModel model_;
+    tick::HandModel model_;
     const std::vector<TickRecord>& records_;
     int queries_ = 0;
 };

@@ -12,8 +12,8 @@
 #include "core/base/random.h"
 #include "core/motion/friction.h"
 #include "core/scene/scene.h"
+#include "core/tick/hand_state.h"
 #include "core/tick/step.h"
-#include "core/tick/tick_state.h"
 
 namespace passung {
 namespace {
@@ -129,8 +129,8 @@ private:
     std::uint64_t kind_ = 0, left_ = 0;
 };
 
-tick::TickModel anyModel(Random& random) {
-    tick::TickModel model;
+tick::HandModel anyModel(Random& random) {
+    tick::HandModel model;
     model.registration.X_WB = {anyRotation(random, 1.0), anyVector(random, 0.3)};
     model.registration.X_DH = {anyRotation(random, 1.0), anyVector(random, 0.05)};
     model.registration.scale = random.uniform(0.5, 2.0);
@@ -155,8 +155,8 @@ void runStages(Random& random) {
     Bits guard_bits("guard"), gate_bits("start gate"), energy_bits("energy"), delay_bits("delay"),
         damper_bits("passivity"), limit_bits("output limits");
     for (int run = 0; run < 120; ++run) {
-        tick::TickModel model = anyModel(random);
-        tick::TickState state;
+        tick::HandModel model = anyModel(random);
+        tick::HandState state;
         const std::size_t pairs = 1 + random.below(3);
         state.pairs.resize(pairs);
         state.pushes.resize(pairs);
@@ -335,8 +335,8 @@ void runScenes(Random& random) {
         if (run == 10) spec.display_wrench = false;
         const auto scene = scene::buildScene(spec, cache);
         if (!scene) std::abort();
-        const tick::TickModel model = tick::makeModel(*scene);
-        tick::TickState state = tick::makeState(model);
+        const tick::HandModel model = tick::makeModel(*scene);
+        tick::HandState state = tick::makeState(model);
         Hand hand(random, spec.parts[0].X_WP);
         const Vec3 start = spec.parts[0].X_WP.p, way = anyVector(random, 0.003);
         for (int i = 0; i < 400; ++i) {

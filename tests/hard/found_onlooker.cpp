@@ -61,7 +61,7 @@ FoundOnlooker::FoundOnlooker(const Found& found, const FoundScene& scene, bool f
     way_.reset(new DenseDistance(distanceOf(scene.spec)));
 }
 
-void FoundOnlooker::look(const tick::TickModel& model, const tick::TickState& state, const tick::TickOutput& output) {
+void FoundOnlooker::look(const tick::HandModel& model, const tick::HandState& state, const tick::TickOutput& output) {
     const tick::TickFrame& frame = output.frame;
     ++seen_.ticks;
     if (!isFinite(output.X_WG) || !isFinite(output.F_D_B)) {
@@ -79,7 +79,7 @@ void FoundOnlooker::look(const tick::TickModel& model, const tick::TickState& st
     ++tick_;
 }
 
-void FoundOnlooker::lookAtWay(const tick::TickModel& model, const tick::TickState& state) {
+void FoundOnlooker::lookAtWay(const tick::HandModel& model, const tick::HandState& state) {
     if (tick_ == 0) return;
     Pose from = X_WG_;
     for (const Pose& to : model.hasSurfaces() ? state.surface->chain() : state.solver.way()) {
@@ -118,7 +118,7 @@ void FoundOnlooker::lookAtGap(const tick::TickOutput& output) {
     hung_ = hangs;
 }
 
-void FoundOnlooker::lookAtForce(const tick::TickModel& model, const tick::TickOutput& output) {
+void FoundOnlooker::lookAtForce(const tick::HandModel& model, const tick::TickOutput& output) {
     const Pose &X_WH = output.frame.X_WH, &X_WG = output.X_WG;
     const double K = model.contact.stiffness;
     const Vec3 spring = K * (X_WG.p - X_WH.p), sent = output.frame.F_H_W.force;
@@ -151,7 +151,7 @@ void FoundOnlooker::lookAtForce(const tick::TickModel& model, const tick::TickOu
 }
 
 /// How far the proxy stays behind one without a cap, which begins anew where the last look was finished.
-void FoundOnlooker::lookAtLag(const tick::TickModel& model, const tick::TickOutput& output) {
+void FoundOnlooker::lookAtLag(const tick::HandModel& model, const tick::TickOutput& output) {
     if (!(output.frame.status & kSuspended)) {
         suspended_ = 0;
         return;

@@ -7,8 +7,8 @@
 
 #include "analysis/truth/force_reference.h"
 #include "core/surface/surface_proxy.h"
-#include "core/tick/tick_model.h"
-#include "core/tick/tick_state.h"
+#include "core/tick/hand_model.h"
+#include "core/tick/hand_state.h"
 #include "tests/hard/dense_overlap.h"
 #include "tests/hard/found.h"
 #include "tests/support/mesh_crossing.h"
@@ -41,15 +41,15 @@ public:
     FoundOnlooker(const Found& found, const FoundScene& scene, bool full);
     FoundOnlooker(const FoundOnlooker&) = delete;  // distances point into it
 
-    void look(const tick::TickModel& model, const tick::TickState& state, const tick::TickOutput& output);
+    void look(const tick::HandModel& model, const tick::HandState& state, const tick::TickOutput& output);
     const Seen& seen() const { return seen_; }
 
 private:
-    void lookAtWay(const tick::TickModel& model, const tick::TickState& state);
+    void lookAtWay(const tick::HandModel& model, const tick::HandState& state);
     void judgePose(const Pose& X, bool between);
     void lookAtGap(const tick::TickOutput& output);
-    void lookAtForce(const tick::TickModel& model, const tick::TickOutput& output);
-    void lookAtLag(const tick::TickModel& model, const tick::TickOutput& output);
+    void lookAtForce(const tick::HandModel& model, const tick::TickOutput& output);
+    void lookAtLag(const tick::HandModel& model, const tick::TickOutput& output);
 
     const Found& found_;
     const FoundScene& scene_;

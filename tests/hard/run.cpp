@@ -28,8 +28,8 @@ Result<Run> runScene(const scene::SceneSpec& spec, const Drive& drive, std::int6
     static scene::PartCache cache;  // methods and seeds of a case share their parts
     const auto scene = scene::buildScene(spec, cache);
     if (!scene) return scene.errors();
-    const tick::TickModel model = tick::makeModel(*scene);
-    tick::TickState state = tick::makeState(model);
+    const tick::HandModel model = tick::makeModel(*scene);
+    tick::HandState state = tick::makeState(model);
     Run run;
     run.spec = run.solids = spec;
     for (const auto& part : scene->parts)

@@ -7,8 +7,8 @@
 
 #include "core/base/result.h"
 #include "core/scene/scene.h"
+#include "core/tick/hand_state.h"
 #include "core/tick/step.h"
-#include "core/tick/tick_state.h"
 
 namespace passung::hard {
 
@@ -43,7 +43,7 @@ std::string hardScenePath(const std::string& name);
 std::string hardScenesFile(const std::string& name);  // another file there, with its ending
 
 /// Who looks at more of a tick than a Run keeps; its time does not count.
-using Onlooker = std::function<void(const tick::TickModel&, const tick::TickState&, const tick::TickOutput&)>;
+using Onlooker = std::function<void(const tick::HandModel&, const tick::HandState&, const tick::TickOutput&)>;
 
 /// Errors: as scene::buildScene.
 Result<Run> runScene(const scene::SceneSpec& spec, const Drive& drive, std::int64_t ticks, const Onlooker& look = {});

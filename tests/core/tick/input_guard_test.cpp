@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/tick/tick_state.h"
+#include "core/tick/hand_state.h"
 
 namespace passung {
 namespace {
@@ -37,8 +37,8 @@ public:
     }
 
 private:
-    tick::TickModel model_;
-    tick::TickState state_;
+    tick::HandModel model_;
+    tick::HandState state_;
 };
 
 struct Fault {
@@ -334,7 +334,7 @@ TEST(StartGate, OpensAfterSoManyTicksInARowWithinBothTolerances) {
     // Truth: the stage's contract, at a start pose that is elsewhere and turned. 10 mm and 0.2 rad in any direction:
     // just within counts, just beyond or without a usable sample begins anew; after more than hold_ticks ticks it is
     // open and stays so.
-    tick::TickModel model;
+    tick::HandModel model;
     model.start_gate = {.position_tolerance = 0.01, .angle_tolerance = 0.2, .hold_ticks = 7};
     model.X_WG_start = {rotationFromVector(Vec3(0.4, -1.1, 0.3)), Vec3(0.3, -0.2, 0.5)};
     Random random(4);
@@ -349,7 +349,7 @@ TEST(StartGate, OpensAfterSoManyTicksInARowWithinBothTolerances) {
     };
     for (const Tick& other : {Tick{0.0101, 0.0, true}, Tick{0.0, 0.201, true}, Tick{0.5, 0.0, true},
                               Tick{0.0, 3.0, true}, Tick{0.0, 0.0, false}}) {
-        tick::TickState state;
+        tick::HandState state;
         const auto engaged = [&](const Tick& t) {
             tick::TickFrame frame;
             frame.X_WH = away(t.distance, t.angle);

@@ -67,8 +67,8 @@ public:
         return limit(atHeldPart(F_D_B, Pose{}), Pose{}, sample_periods, usable);
     }
 
-    tick::TickModel model;
-    tick::TickState state;
+    tick::HandModel model;
+    tick::HandState state;
 };
 
 TEST(OutputStage, KeepsDirectionAndScalesForceAndTorqueTogether) {
@@ -202,7 +202,7 @@ TEST(OutputStage, LatchesWhateverPartOfTheWrenchIsNotFinite) {
                     EXPECT_EQ(frame.F_D_B.force.norm() + frame.F_D_B.torque.norm(), 0.0);
                     EXPECT_EQ(frame.F_H_W.force.norm() + frame.F_H_W.torque.norm(), 0.0);
                 }
-                last.state = tick::TickState();
+                last.state = tick::HandState();
                 EXPECT_NEAR(last.limitAtHandle({Vec3(0, 0, 10), Vec3::Zero()}).F_D_B.force.z(), LastStage::kForceRise,
                             1e-12);
             }
@@ -408,7 +408,7 @@ TEST(OutputStage, KeepsItsContractForAnyWrench) {
         ASSERT_EQ((frame.status & kNonFiniteLatched) != 0, broken) << i;
         ASSERT_NO_FATAL_FAILURE(watch.see(last.atHandle(F_H_W, X_WH), frame)) << i;
         held_before = held || !usable;
-        if (broken) last.state = tick::TickState();
+        if (broken) last.state = tick::HandState();
     }
     EXPECT_GT(watch.limited, 1000);
     EXPECT_GT(watch.rated, 1000);
@@ -431,9 +431,9 @@ TEST(OutputStage, KeepsItsContractUnderHostileInput) {
         spec.limits.max_force_rate = 190;
         spec.registration.X_DH = {Quat::Identity(), Vec3(0.03, 0, 0)};
         test::Bench bench(spec);
-        tick::TickModel model = bench.model();
+        tick::HandModel model = bench.model();
         model.stages.insert(model.stages.end() - 1, {"probe", "planted", true,
-                                                     [](const tick::TickModel&, tick::TickState&,
+                                                     [](const tick::HandModel&, tick::HandState&,
                                                         tick::TickFrame& f) noexcept { g_asked = f; }});
         Watch watch(spec.limits);
         Random random(9);
@@ -532,9 +532,9 @@ TEST(OutputStage, DelaysForceTorqueAndPushesBySoManyTicks) {
     // Truth: closed form, y_k = x_{k-n}, zero before the first; what was asked for without usable input is zero. Up to
     // the longest delay, several times round the line.
     for (const int n : {1, 2, 7, scene::kMaxDelayTicks}) {
-        tick::TickModel model;
+        tick::HandModel model;
         model.limits.delay_ticks = n;
-        tick::TickState state;
+        tick::HandState state;
         state.pushes.resize(2);
         state.push_line.resize(2 * (scene::kMaxDelayTicks + 1));
         Random random(2);
@@ -577,10 +577,10 @@ TEST(OutputStage, LatchesZeroAfterANonFiniteWrenchUntilTheStateIsMadeAnew) {
     // Truth: invariant. A stage that computes NaN is planted for one tick.
     test::Bench bench(pressing());
     pressed(bench, 0.004);
-    tick::TickModel broken = bench.model();
+    tick::HandModel broken = bench.model();
     broken.stages.insert(
         broken.stages.end() - 1,
-        {"broken", "planted", true, [](const tick::TickModel&, tick::TickState&, tick::TickFrame& f) noexcept {
+        {"broken", "planted", true, [](const tick::HandModel&, tick::HandState&, tick::TickFrame& f) noexcept {
              f.F_H_W.force.x() = std::numeric_limits<double>::quiet_NaN();
          }});
     const auto bad = tick::step(broken, bench.state(), DeviceReading{at(0.006)});

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/base/random.h"
-#include "core/tick/tick_state.h"
+#include "core/tick/hand_state.h"
 #include "tests/support/scenes.h"
 
 namespace passung {
@@ -148,14 +148,14 @@ TEST(EnergyAccount, BooksForcesAndTorquesOnTheMotionThatIsCertain) {
     for (int run = 0; run < 40; ++run) {
         const auto any = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
         const auto anyWrench = [&] { return Wrench{any(), 0.1 * any()}; };
-        tick::TickModel model;
+        tick::HandModel model;
         model.limits.quantum = run % 4 == 0 ? 0.0 : 1e-4;
         model.limits.rotational_quantum = run % 3 == 0 ? 0.0 : 2e-3;
         const Vec3 q = Vec3::Constant(0.5 * model.limits.quantum),
                    r = Vec3::Constant(0.5 * model.limits.rotational_quantum);
         const double speed = run % 2 == 0 ? 2e-4 : 2e-5;
         const Vec3 axis = any().normalized();
-        tick::TickState state;
+        tick::HandState state;
         state.pairs.resize(2);
         state.last_shares.resize(2);
         Vec3 x = any(), x_before = x, y = x, psi = Vec3::Zero();
@@ -261,7 +261,7 @@ public:
         frame.X_WH = X_WH;
         frame.F_H_W = kContact;
         frame.sample_periods = sample_periods;
-        tick::TickState state;
+        tick::HandState state;
         state.energy.taken_in = energy;
         state.energy.V_BD = V_BD;
         tick::runStage<tick::kPassivityController>(model, state, frame);
@@ -276,7 +276,7 @@ public:
         return {R_WB * V_BD.v + w.cross(lever), w};
     }
 
-    tick::TickModel model;
+    tick::HandModel model;
     Pose X_WH{rotationFromVector(Vec3(0.7, 0.1, -0.4)), Vec3(0.2, -0.1, 0.4)};
     bool acted = false;
 

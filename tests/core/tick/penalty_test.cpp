@@ -40,8 +40,8 @@ public:
     }
 
 private:
-    tick::TickModel model_;
-    tick::TickState state_;
+    tick::HandModel model_;
+    tick::HandState state_;
 };
 
 constexpr double kForce = 2.0, kTorque = -0.02;

@@ -71,7 +71,7 @@ TEST(SceneModels, StayWhereTheyAreAndAreThoseOfTheirScenes) {
     // Truth: invariant: the bits of a tick do not depend on who keeps its model, nor on the whole being moved.
     test::Bench soft(pressed(500.0)), hard(pressed(1000.0));
     tick::SceneModels built(std::array{soft.scene(), hard.scene()});
-    const tick::TickModel* second = &built[1];
+    const tick::HandModel* second = &built[1];
     const tick::SceneModels models = std::move(built);
     ASSERT_EQ(models.size(), 2u);
     EXPECT_EQ(second, &models[1]);

@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "core/base/random.h"
+#include "core/tick/hand_state.h"
 #include "core/tick/step.h"
-#include "core/tick/tick_state.h"
 #include "tests/support/every_effect.h"
 #include "tests/support/fields.h"
 #include "tests/support/scenes.h"
@@ -19,10 +19,10 @@
 namespace passung {
 namespace {
 
+using tick::HandState;
 using tick::StageList;
 using tick::StageOf;
 using tick::TickFrame;
-using tick::TickState;
 
 constexpr int kTimes = 1000;
 
@@ -97,16 +97,16 @@ DeviceReading readingAt(int tick, Random& random) {
 }
 
 struct Checker {
-    const tick::TickModel& model;
+    const tick::HandModel& model;
     Random& random;
     std::map<std::string, int>& times;
-    TickState state_a, state_b;
+    HandState state_a, state_b;
     TickFrame frame_a, frame_b;
 
     /// Runs `stage` from `state` and `frame` as they are, and with random bits in all that it does not declare to
     /// read: the same bits in what it writes, no other bits in what it does not.
     template <const auto& stage>
-    void check(const TickState& state, const TickFrame& frame) {
+    void check(const HandState& state, const TickFrame& frame) {
         int& count = times[std::string(stage.card.name) + (model.hasNodeBudget() ? " under a budget" : "")];
         if (count >= kTimes) return;
         ++count;
@@ -141,7 +141,7 @@ struct Checker {
     /// What `Part` became where nothing was scrambled.
     template <class Part>
     std::vector<std::uint64_t> bitsAfter() const {
-        if constexpr (std::is_base_of_v<Part, TickState>)
+        if constexpr (std::is_base_of_v<Part, HandState>)
             return test::bitsOf(static_cast<const Part&>(state_a));
         else
             return test::bitsOf(static_cast<const Part&>(frame_a));
@@ -149,8 +149,8 @@ struct Checker {
 
     /// That one of all stages which `run` is.
     template <const auto&... stage>
-    void checkThat(StageList<stage...>, void (*run)(const tick::TickModel&, TickState&, TickFrame&) noexcept,
-                   const TickState& state, const TickFrame& frame) {
+    void checkThat(StageList<stage...>, void (*run)(const tick::HandModel&, HandState&, TickFrame&) noexcept,
+                   const HandState& state, const TickFrame& frame) {
         ((run == tick::runStage<stage> ? check<stage>(state, frame) : void()), ...);
     }
 };
@@ -198,7 +198,7 @@ std::vector<Writers> writersOf(StageList<stage...>, const std::vector<tick::Stag
             writers.count += ((entry.run == tick::runStage<stage> && writes<Part>(stage)) + ...);
         all.push_back(writers);
     };
-    TickState state;
+    HandState state;
     TickFrame frame;
     eachPart(state, add);
     eachPart(frame, add);

@@ -1,7 +1,7 @@
+#include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/stage.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 
 // An effect as stage.h shows it, and with FAULTS what it may not do: undeclared_access.cmake wants an error at each of
 // those lines.
@@ -12,7 +12,7 @@ struct Hum {
     double phase = 0.0;
 };
 
-void renderHum(const TickModel& model, const Reading& device, const HandSample& hand, const Proxy& proxy, Hum& hum,
+void renderHum(const HandModel& model, const Reading& device, const HandSample& hand, const Proxy& proxy, Hum& hum,
                HandWrench& wrench) noexcept {
     hum.phase += hand.X_WH.p.x() + proxy.X_WG.p.x() + device.reading.X_BD.p.x();
     wrench.F_H_W.force.x() += hum.phase * model.contact.stiffness;
@@ -22,24 +22,24 @@ void renderHum(const TickModel& model, const Reading& device, const HandSample& 
     proxy.manifold.clear();                       // FAULT: changes a list that it declares to read
     proxy.manifold.begin()->phi = 0.0;            // FAULT: writes through an element of it
     static_cast<TickFrame&>(wrench).status = 0;   // FAULT: goes from a part to the whole
-    static_cast<TickState&>(hum).engaged = true;  // FAULT: the same in what lasts
+    static_cast<HandState&>(hum).engaged = true;  // FAULT: the same in what lasts
     device.reading.fresh = true;                  // FAULT: writes the reading
     for (contact::ContactPoint& point : proxy.manifold) point.phi = 0.0;  // FAULT: writes the elements
 #endif
 }
 
-void takesState(const TickModel&, TickState&) noexcept;
-void takesFrame(const TickModel&, const TickFrame&) noexcept;
-void writesReading(const TickModel&, Reading&) noexcept;
-void takesCopy(const TickModel&, HandSample) noexcept;
-void writesModel(TickModel&, Hum&) noexcept;
-void mayThrow(const TickModel&, Hum&);
+void takesState(const HandModel&, HandState&) noexcept;
+void takesFrame(const HandModel&, const TickFrame&) noexcept;
+void writesReading(const HandModel&, Reading&) noexcept;
+void takesCopy(const HandModel&, HandSample) noexcept;
+void writesModel(HandModel&, Hum&) noexcept;
+void mayThrow(const HandModel&, Hum&);
 
 inline constexpr StageCard kCard{.name = "hum",
                                  .parameters = "",
                                  .cost = "constant",
-                                 .needs = [](const TickModel&) { return true; },
-                                 .reason = [](const TickModel&) { return "always"; }};
+                                 .needs = [](const HandModel&) { return true; },
+                                 .reason = [](const HandModel&) { return "always"; }};
 inline constexpr StageOf kHum{renderHum, kCard};
 
 #ifdef FAULTS

@@ -31,8 +31,8 @@ public:
     }
 
 private:
-    tick::TickModel model_;
-    tick::TickState state_;
+    tick::HandModel model_;
+    tick::HandState state_;
 };
 
 /// The hand below and turned against a proxy at rest: moving down at 0.1 m/s and turning at 0.5 rad/s.

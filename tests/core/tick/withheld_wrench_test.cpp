@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/tick/hand_state.h"
 #include "core/tick/step.h"
-#include "core/tick/tick_state.h"
 #include "tests/support/scenes.h"
 
 namespace passung {

@@ -6,7 +6,7 @@
 
 #include "analysis/export/export.h"
 #include "core/scene/scene.h"
-#include "core/tick/tick_model.h"
+#include "core/tick/hand_model.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
 #include "study/store/read/store_reader.h"

@@ -1,22 +1,22 @@
-#include "core/tick/tick_model.h"
+#include "core/tick/hand_model.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/field/distance_field.h"
-#include "core/tick/tick_state.h"
+#include "core/tick/hand_state.h"
 
 namespace passung::tick {
 
 namespace {
 
 /// Shares of a cell, or less, so that no more overlap than `most` is accepted [m].
-ProxyMargins marginsOf(const TickModel& model, const ProxyMargins& share, double most) {
+ProxyMargins marginsOf(const HandModel& model, const ProxyMargins& share, double most) {
     const double s = std::min(model.finest_cell, most / share.accept);
     return {share.keep * s, share.relieve * s, share.accept * s};
 }
 
-ProxyMargins marginsOf(const TickModel& model) {
+ProxyMargins marginsOf(const HandModel& model) {
     if (model.hasFieldProxyOf(scene::ContactMethod::GodObjectHeuristic))
         return marginsOf(model, {kKeep, kRelieve, kAccept}, model.contact.tolerance);
     if (model.hasFieldProxyOf(scene::ContactMethod::GodObject))
@@ -24,7 +24,7 @@ ProxyMargins marginsOf(const TickModel& model) {
     return {};
 }
 
-void addFields(TickModel& model, const scene::Scene& scene) {
+void addFields(HandModel& model, const scene::Scene& scene) {
     const scene::SceneSpec& spec = scene.spec;
     model.shell = &*scene.parts[scene.held]->shell;
     model.reach = model.shell->reach();
@@ -44,7 +44,7 @@ void addFields(TickModel& model, const scene::Scene& scene) {
 }
 
 /// The held part's first, then the obstacles'.
-void addSolids(TickModel& model, const scene::Scene& scene) {
+void addSolids(HandModel& model, const scene::Scene& scene) {
     const auto solidOf = [&](std::size_t part) { return *closed_form::solidOf(*scene.parts[part]->shape); };
     model.solids.push_back(solidOf(scene.held));
     model.reach = closed_form::reachOf(model.solids.front());
@@ -56,7 +56,7 @@ void addSolids(TickModel& model, const scene::Scene& scene) {
 }
 
 /// The held part's triangles, and those of all obstacles in the world.
-void addSurfaces(TickModel& model, const scene::Scene& scene) {
+void addSurfaces(HandModel& model, const scene::Scene& scene) {
     model.held_surface = scene.parts[scene.held]->clusters.get();
     model.reach = model.held_surface->reach();
     std::vector<geometry::PlacedTree> obstacles;
@@ -72,7 +72,7 @@ void addSurfaces(TickModel& model, const scene::Scene& scene) {
 }
 
 /// Of the held part's surface about its origin [m].
-double gyrationRadius(const TickModel& model, const scene::Scene& scene) {
+double gyrationRadius(const HandModel& model, const scene::Scene& scene) {
     if (model.shell != nullptr) return model.shell->gyrationRadius();
     const geometry::TriangleMesh& mesh = scene.parts[scene.held]->mesh;
     double area = 0.0, second = 0.0;
@@ -86,7 +86,7 @@ double gyrationRadius(const TickModel& model, const scene::Scene& scene) {
 }
 
 /// The coefficients of the held part with each obstacle, if any rubs.
-void addFriction(TickModel& model, const scene::Scene& scene) {
+void addFriction(HandModel& model, const scene::Scene& scene) {
     const auto& parts = scene.spec.parts;
     const scene::PartSpec& held = parts[scene.held];
     std::vector<motion::Friction> friction;
@@ -101,7 +101,7 @@ void addFriction(TickModel& model, const scene::Scene& scene) {
 }
 
 template <const auto&... stage>
-void addStages(TickModel& model, StageList<stage...>) {
+void addStages(HandModel& model, StageList<stage...>) {
     const auto add = [&model](const StageCard& card, auto* run) {
         if (card.needs(model)) model.stages.push_back({card.name, card.reason(model), card.before_start, run});
     };
@@ -110,8 +110,8 @@ void addStages(TickModel& model, StageList<stage...>) {
 
 }  // namespace
 
-TickModel makeModel(const scene::Scene& scene) {
-    TickModel model;
+HandModel makeModel(const scene::Scene& scene) {
+    HandModel model;
     const scene::SceneSpec& spec = scene.spec;
     model.contact = spec.contact;
     model.limits = spec.limits;

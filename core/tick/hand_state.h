@@ -7,6 +7,7 @@
 #include "core/tick/energy_account.h"
 #include "core/tick/god_object.h"
 #include "core/tick/god_object_heuristic.h"
+#include "core/tick/hand_model.h"
 #include "core/tick/input_guard.h"
 #include "core/tick/output_stage.h"
 #include "core/tick/passivity.h"
@@ -18,7 +19,6 @@
 #include "core/tick/step.h"
 #include "core/tick/surface_follow.h"
 #include "core/tick/tick_frame.h"
-#include "core/tick/tick_model.h"
 #include "core/tick/transients.h"
 #include "core/tick/virtual_coupling.h"
 
@@ -49,16 +49,16 @@ struct TickCount {
 };
 
 /// Everything that a tick carries to the next: the stages' own states. Sized by makeState; a tick never allocates.
-struct TickState : Parts<TickCount, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion, ProxyFilter,
+struct HandState : Parts<TickCount, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion, ProxyFilter,
                          ClosedFormHold, FilteredHold, ClosedFormMemory, SurfaceFollow, HandVelocity, ToolMotion,
                          Stretch, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
 
 /// The state before the first tick, with all memory that the ticks will need.
-TickState makeState(const TickModel& model);
+HandState makeState(const HandModel& model);
 
 /// Runs a stage on its parts. rt-safe.
 template <const auto& stage>
-void runStage(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
+void runStage(const HandModel& model, HandState& state, TickFrame& frame) noexcept {
     stage(model, state, frame);
 }
 

@@ -1,4 +1,4 @@
-#include "core/tick/tick_state.h"
+#include "core/tick/hand_state.h"
 
 #include <algorithm>
 #include <utility>
@@ -12,7 +12,7 @@ namespace passung::tick {
 namespace {
 
 /// Empty ones, of each obstacle.
-std::vector<PairCertificates> certificatesOf(const TickModel& model) {
+std::vector<PairCertificates> certificatesOf(const HandModel& model) {
     std::vector<PairCertificates> all;
     // Cells of a size that was chosen take no tolerance.
     const auto of = [&](const shell::SphereTree& shell, const shell::EdgeCurves& edges,
@@ -30,7 +30,7 @@ std::vector<PairCertificates> certificatesOf(const TickModel& model) {
     return all;
 }
 
-void addQueryMemory(const TickModel& model, Proxy& proxy, QueryMemory& memory) {
+void addQueryMemory(const HandModel& model, Proxy& proxy, QueryMemory& memory) {
     // When a budget ends a node stands in by a point and a sphere, and every obstacle may touch every point and every
     // edge around every station.
     const auto most = [](const shell::SphereTree& shell, const shell::EdgeCurves& edges) {
@@ -58,8 +58,8 @@ void addQueryMemory(const TickModel& model, Proxy& proxy, QueryMemory& memory) {
 
 }  // namespace
 
-TickState makeState(const TickModel& model) {
-    TickState state;
+HandState makeState(const HandModel& model) {
+    HandState state;
     state.engaged = model.start_gate.hold_ticks <= 0;
     state.X_WG = state.step.X_WH_followed = model.X_WG_start;
     state.pairs.resize(model.obstacles.size() + 1);

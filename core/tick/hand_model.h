@@ -13,8 +13,8 @@
 
 namespace passung::tick {
 
-/// An obstacle fixed in the world, as what its geometry is: a distance field, one of TickModel::solids, or a share of
-/// TickModel::obstacle_surface.
+/// An obstacle fixed in the world, as what its geometry is: a distance field, one of HandModel::solids, or a share of
+/// HandModel::obstacle_surface.
 struct Obstacle {
     const field::DistanceField* field;  // Geometry::Field only
     Pose X_WF;
@@ -30,7 +30,7 @@ struct ProxyMargins {
 };
 
 /// Everything that does not change while a trial runs. Borrows the scene's parts.
-struct TickModel {
+struct HandModel {
     scene::Geometry geometry = scene::Geometry::Field;
     // Geometry::Field only
     const shell::SphereTree* shell = nullptr;
@@ -75,6 +75,6 @@ struct TickModel {
 };
 
 /// What the scene fixes, and those of AllStages that it needs. `scene` must outlive the result.
-TickModel makeModel(const scene::Scene& scene);
+HandModel makeModel(const scene::Scene& scene);
 
 }  // namespace passung::tick
