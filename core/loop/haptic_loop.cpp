@@ -36,7 +36,7 @@ void sleepUntil(std::int64_t nanoseconds) noexcept {
 
 }  // namespace
 
-HapticCycle::HapticCycle(const tick::HandModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy,
+HapticCycle::HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy,
                          std::span<ScreenRing* const> screens)
     : HapticCycle(std::array{tick::SceneTurn{&model}}, device, ring, show_proxy, screens) {}
 

@@ -32,7 +32,7 @@ class HapticCycle {
 public:
     /// `show_proxy`: the display draws the proxy, otherwise the device's pose. `screens` get every tick too; what
     /// they drop matters to nobody. Borrows everything.
-    HapticCycle(const tick::HandModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy,
+    HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy,
                 std::span<ScreenRing* const> screens = {});
     /// The same for scenes that are rendered one after the other. Not `timed`: no clock is read, all times are 0.
     HapticCycle(std::span<const tick::SceneTurn> turns, HapticDevice& device, RecordRing& ring, bool show_proxy,

@@ -47,9 +47,12 @@ const char* surfaceProblem(const PartSpec& held, const PartSpec& obstacle, const
     return nullptr;
 }
 
-const PartSpec* heldPart(const SceneSpec& scene) {
-    const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const auto& part) { return part.held; });
-    return held == scene.parts.end() ? nullptr : &*held;
+/// Calls `f` with each held part and each part that it can meet. Parts of two hands meet twice, once as either's.
+template <class F>
+void eachPair(const SceneSpec& scene, F f) {
+    for (const PartSpec& held : scene.parts)
+        for (const PartSpec& obstacle : scene.parts)
+            if (held.held && &held != &obstacle) f(held, obstacle);
 }
 
 }  // namespace
@@ -63,34 +66,31 @@ GeometryChoice geometryOfPair(const PartSpec& held, const PartSpec& obstacle, co
 }
 
 GeometryChoice geometryOf(const SceneSpec& scene) {
-    const PartSpec* held = heldPart(scene);
     std::optional<GeometryChoice> all;
-    for (const PartSpec& part : scene.parts) {
-        if (held == nullptr || part.held) continue;
-        const GeometryChoice choice = geometryOfPair(*held, part, scene.contact);
+    eachPair(scene, [&](const PartSpec& held, const PartSpec& obstacle) {
+        const GeometryChoice choice = geometryOfPair(held, obstacle, scene.contact);
         const bool coarser = all && (choice.geometry == Geometry::Field ||
                                      (choice.geometry == Geometry::Surface && all->geometry == Geometry::ClosedForm));
         if (!all || coarser) all = choice;
-    }
+    });
     return all.value_or(GeometryChoice{Geometry::Field, "the scene has no obstacle"});
 }
 
 std::optional<std::string> geometryProblem(const SceneSpec& scene) {
-    const PartSpec* held = heldPart(scene);
     const Geometry asked = scene.contact.geometry;
     const auto thread = std::find_if(scene.parts.begin(), scene.parts.end(), isThread);
     if (thread != scene.parts.end() && scene.parts.size() > 1 && geometryOf(scene).geometry == Geometry::Field)
         return "must not be distance fields with a thread, whose field would take minutes: needs a god object without "
                "friction and proxy_filter_hz (" +
                thread->name + ")";
-    if ((asked != Geometry::ClosedForm && asked != Geometry::Surface) || held == nullptr) return std::nullopt;
-    for (const PartSpec& part : scene.parts) {
-        if (part.held) continue;
-        const auto problemOf = asked == Geometry::Surface ? surfaceProblem : closedFormProblem;
-        if (const char* problem = problemOf(*held, part, scene.contact))
-            return std::string(problem) + " (" + held->name + ", " + part.name + ")";
-    }
-    return std::nullopt;
+    if (asked != Geometry::ClosedForm && asked != Geometry::Surface) return std::nullopt;
+    const auto problemOf = asked == Geometry::Surface ? surfaceProblem : closedFormProblem;
+    std::optional<std::string> first;
+    eachPair(scene, [&](const PartSpec& held, const PartSpec& obstacle) {
+        const char* const problem = problemOf(held, obstacle, scene.contact);
+        if (!first && problem != nullptr) first = std::string(problem) + " (" + held.name + ", " + obstacle.name + ")";
+    });
+    return first;
 }
 
 const char* methodName(ContactMethod method) {

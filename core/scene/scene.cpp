@@ -51,8 +51,8 @@ Result<Scene> buildScene(const SceneSpec& spec, PartCache& cache) {
     const bool fields = geometry == Geometry::Field;
     for (std::size_t i = 0; i < spec.parts.size(); ++i) {
         const PartSpec& part = spec.parts[i];
-        if (part.held) scene.held = i;
-        auto built = cache.get(part, {.field = fields && (!part.held || spec.contact.two_way),
+        const bool obstacle = !part.held || spec.handCount() > 1;
+        auto built = cache.get(part, {.field = fields && (obstacle || spec.contact.two_way),
                                       .shell = fields && (part.held || spec.contact.two_way),
                                       .clusters = geometry == Geometry::Surface,
                                       .tolerance = spec.contact.tolerance,
@@ -61,6 +61,7 @@ Result<Scene> buildScene(const SceneSpec& spec, PartCache& cache) {
         if (!built) return built.errors();
         scene.parts.push_back(std::move(*built));
     }
+    scene.held = spec.heldBy(0);
     return scene;
 }
 

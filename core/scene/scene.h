@@ -29,12 +29,12 @@ private:
 struct Scene {
     SceneSpec spec;
     std::vector<std::shared_ptr<const Part>> parts;  // in the order of spec.parts
-    std::size_t held = 0;                            // index of the hand's part
+    std::size_t held = 0;                            // index of the first hand's part
 };
 
-/// Builds what the scene's geometry (contact_geometry.h) takes: of Geometry::Field the shell of the held part and the
-/// fields of all others, with contact.two_way all of both; of closed forms nothing beside the parts. Errors:
-/// SceneSpec::validate and buildPart.
+/// Builds what the scene's geometry (contact_geometry.h) takes: of Geometry::Field the shells of the held parts and the
+/// fields of all that they can meet, with contact.two_way all of both; of closed forms nothing beside the parts.
+/// Errors: SceneSpec::validate and buildPart.
 Result<Scene> buildScene(const SceneSpec& spec, PartCache& cache);
 
 }  // namespace passung::scene

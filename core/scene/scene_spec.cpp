@@ -1,5 +1,6 @@
 #include "core/scene/scene_spec.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -25,17 +26,41 @@ public:
             errors.push_back({.message = "must be finite with a unit rotation", .key = key});
         }
     }
+    void device(const HandSpec& hand) {
+        const auto& [limits, registration, start_gate] = hand;
+        positive("limits: max force", limits.max_force);
+        notNegative("limits: max torque", limits.max_torque);
+        positive("limits: max force rate", limits.max_force_rate);
+        positive("limits: max speed", limits.max_speed);
+        positive("limits: max spin", limits.max_spin);
+        require(limits.delay_ticks >= 0 && limits.delay_ticks <= kMaxDelayTicks, "limits: delay_ticks",
+                limits.delay_ticks, "must be 0 … 100");
+        finite("registration: device base", registration.X_WB);
+        finite("registration: handle", registration.X_DH);
+        positive("registration: scale", registration.scale);
+        notNegative("start gate: position tolerance", start_gate.position_tolerance);
+        notNegative("start gate: angle tolerance", start_gate.angle_tolerance);
+        require(start_gate.hold_ticks >= 0, "start gate: hold", start_gate.hold_ticks, "must be ≥ 0");
+    }
     std::vector<Error> errors;
 };
 
 }  // namespace
 
+std::size_t SceneSpec::heldBy(std::size_t i) const {
+    const auto held = [i](const PartSpec& part) { return part.held && part.hand == i; };
+    return static_cast<std::size_t>(std::find_if(parts.begin(), parts.end(), held) - parts.begin());
+}
+
 std::vector<Error> SceneSpec::validate() const {
     Checks check;
-    int held = 0;
+    std::vector<int> held(handCount());
     std::set<std::string> names;
     for (const auto& part : parts) {
-        held += part.held ? 1 : 0;
+        if (part.held && part.hand < held.size()) ++held[part.hand];
+        if (part.held && part.hand >= held.size())
+            check.errors.push_back(
+                {.message = "is held by a hand that the scene has not", .key = "part", .value = part.name});
         check.finite("part " + part.name + ": pose", part.X_WP);
         if (!names.insert(part.name).second) {
             check.errors.push_back({.message = "part names must differ", .key = "part", .value = part.name});
@@ -53,7 +78,10 @@ std::vector<Error> SceneSpec::validate() const {
         check.require(!(part.sliding_friction > part.friction), "part: sliding friction", part.sliding_friction,
                       "must not exceed the friction at rest");
     }
-    check.require(held == 1, "part: held", held, "exactly one part must be held");
+    check.require(held.size() <= kMostHands, "hands", static_cast<double>(held.size()), "must be 1 … 4");
+    for (const int parts_of_hand : held)
+        check.require(parts_of_hand == 1, "part: held", parts_of_hand,
+                      held.size() == 1 ? "exactly one part must be held" : "each hand must hold exactly one part");
     check.positive("contact: stiffness", contact.stiffness);
     check.notNegative("contact: rotational stiffness", contact.rotational_stiffness);
     check.notNegative("contact: damping", contact.damping);
@@ -71,13 +99,6 @@ std::vector<Error> SceneSpec::validate() const {
     check.notNegative("contact: cell", contact.cell);
     check.positive("contact: spacing", contact.spacing);
     check.require(contact.budget_nodes >= 0, "contact: budget_nodes", contact.budget_nodes, "must be ≥ 0");
-    check.positive("limits: max force", limits.max_force);
-    check.notNegative("limits: max torque", limits.max_torque);
-    check.positive("limits: max force rate", limits.max_force_rate);
-    check.positive("limits: max speed", limits.max_speed);
-    check.positive("limits: max spin", limits.max_spin);
-    check.require(limits.delay_ticks >= 0 && limits.delay_ticks <= kMaxDelayTicks, "limits: delay_ticks",
-                  limits.delay_ticks, "must be 0 … 100");
     check.notNegative("effects: passivity damping", effects.passivity_damping);
     const Transients& transients = effects.transients;
     check.notNegative("effects: transients: amplitude", transients.amplitude);
@@ -86,12 +107,7 @@ std::vector<Error> SceneSpec::validate() const {
                   "must be below half the tick's rate, 500 Hz");
     check.positive("effects: transients: decay", transients.decay);
     check.notNegative("contact: proxy filter", contact.proxy_filter);
-    check.finite("registration: device base", registration.X_WB);
-    check.finite("registration: handle", registration.X_DH);
-    check.positive("registration: scale", registration.scale);
-    check.notNegative("start gate: position tolerance", start_gate.position_tolerance);
-    check.notNegative("start gate: angle tolerance", start_gate.angle_tolerance);
-    check.require(start_gate.hold_ticks >= 0, "start gate: hold", start_gate.hold_ticks, "must be ≥ 0");
+    for (std::size_t i = 0; i < handCount(); ++i) check.device(hand(i));
     return check.errors;
 }
 

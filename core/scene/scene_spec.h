@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <variant>
@@ -24,7 +25,8 @@ struct PartSpec {
     std::string name;
     std::variant<shape::Shape, MeshFile> geometry;
     Pose X_WP;                         // part to world at the start
-    bool held = false;                 // the hand's part; exactly one in a scene
+    bool held = false;                 // by a hand; each hand of a scene holds exactly one
+    std::size_t hand = 0;              // which one, in the order of SceneSpec::hand()
     double friction = 0.0;             // of the surface at rest: μ_s of a pair is the geometric mean, ≥ 0
     double sliding_friction = 0.0;     // likewise μ_d, ≤ friction
     Vec3 shown_offset = Vec3::Zero();  // drawn this far from where it is touched, world axes [m]
@@ -107,15 +109,34 @@ struct Effects {
     Transients transients;
 };
 
-struct SceneSpec {
-    std::vector<PartSpec> parts;
-    ContactSpec contact;
+inline constexpr std::size_t kMostHands = 4;
+
+/// One hand with its device.
+struct HandSpec {
     OutputLimits limits;
     Registration registration;
     StartGate start_gate;
+};
+
+struct SceneSpec {
+    std::vector<PartSpec> parts;
+    ContactSpec contact;
+    // Of the first hand
+    OutputLimits limits;
+    Registration registration;
+    StartGate start_gate;
+    std::vector<HandSpec> other_hands;
     Effects effects;
     bool record_hand_depth = true;  // an extra query at the device pose for god objects
     bool display_wrench = true;     // false: contact is computed and recorded, but the device commands nothing
+
+    std::size_t handCount() const { return 1 + other_hands.size(); }
+    /// @pre `i` < handCount()
+    HandSpec hand(std::size_t i) const {
+        return i == 0 ? HandSpec{limits, registration, start_gate} : other_hands[i - 1];
+    }
+    /// Index of the part that hand `i` holds. @pre validate() found nothing, `i` < handCount()
+    std::size_t heldBy(std::size_t i) const;
 
     /// Everything wrong with the values, cross-field rules included. Finite first.
     std::vector<Error> validate() const;

@@ -39,7 +39,8 @@ int mostLooks(const HandModel& model, const ClosedFormMemory& memory) noexcept {
 std::vector<closed_form::SolidPair> pairsOf(const HandModel& model) {
     std::vector<closed_form::SolidPair> pairs;
     for (std::size_t i = 0; i < model.obstacles.size(); ++i)
-        pairs.push_back({&model.solids.front(), &model.solids[i + 1], model.obstacles[i].X_WF, model.metric_radius});
+        pairs.push_back({model.held_solid, model.obstacles[i].solid, model.bodies[model.obstacles[i].body].X_WP_start,
+                         model.metric_radius});
     return pairs;
 }
 
@@ -50,7 +51,9 @@ ClosedFormMemory closedFormMemory(const HandModel& model) {
     const auto pairs = pairsOf(model);
     memory.solver = closed_form::PoseSolver(pairs);
     for (const closed_form::SolidPair& pair : pairs) memory.at_hand.emplace_back(pair);
-    memory.has_thread = std::any_of(model.solids.begin(), model.solids.end(), closed_form::isThread);
+    memory.has_thread = closed_form::isThread(*model.held_solid) ||
+                        std::any_of(model.obstacles.begin(), model.obstacles.end(),
+                                    [](const Obstacle& obstacle) { return closed_form::isThread(*obstacle.solid); });
     return memory;
 }
 

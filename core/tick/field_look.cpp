@@ -18,14 +18,15 @@ struct Way {
     contact::ShellCertificates* known;
 };
 
-Way wayOf(const HandModel& model, const FieldLook& look, std::span<PairCertificates> known) noexcept {
+Way wayOf(const HandModel& model, const ObstaclePoses& obstacles, const FieldLook& look,
+          std::span<PairCertificates> known) noexcept {
     const Obstacle& obstacle = model.obstacles[look.obstacle];
+    const Pose& X_WO = obstacles.X_WO[look.obstacle];
     PairCertificates* const pair = known.empty() || look.proves ? nullptr : &known[look.obstacle];
     if (look.back)
-        return {*model.held_field, look.X_WG,     *obstacle.shell,
-                *obstacle.edges,   obstacle.X_WF, pair != nullptr ? &pair->obstacle : nullptr};
-    return {*obstacle.field, obstacle.X_WF, *model.shell,
-            *model.edges,    look.X_WG,     pair != nullptr ? &pair->held : nullptr};
+        return {*model.held_field, look.X_WG, *obstacle.shell,
+                *obstacle.edges,   X_WO,      pair != nullptr ? &pair->obstacle : nullptr};
+    return {*obstacle.field, X_WO, *model.shell, *model.edges, look.X_WG, pair != nullptr ? &pair->held : nullptr};
 }
 
 contact::QueryRequest requestOf(const HandModel& model, const FieldLook& look, int left) noexcept {
@@ -74,11 +75,12 @@ void beginLook(FieldLook& look, const Pose& X_WG, double reach, double search) n
     startRound(look, false);
 }
 
-bool goOnLooking(const HandModel& model, FieldLook& look, std::span<PairCertificates> known, Report& report) noexcept {
+bool goOnLooking(const HandModel& model, const ObstaclePoses& obstacles, FieldLook& look,
+                 std::span<PairCertificates> known, Report& report) noexcept {
     const int budget = model.contact.budget_nodes;
     int left = budget;
     for (bool ended = false; !ended;) {
-        const Way way = wayOf(model, look, known);
+        const Way way = wayOf(model, obstacles, look, known);
         const contact::QueryRequest request = requestOf(model, look, left);
         const contact::QueryAnswer answer =
             look.along_edges ? contact::searchEdges(way.field, way.X_WF, way.edges, way.X_WS, request, look.found,

@@ -19,6 +19,7 @@ namespace passung::tick {
 void beginLook(FieldLook& look, const Pose& X_WG, double reach, double search) noexcept;
 
 /// Goes on with a look that is open, by a budget's worth; true: it has ended. rt-safe.
-bool goOnLooking(const HandModel& model, FieldLook& look, std::span<PairCertificates> known, Report& report) noexcept;
+bool goOnLooking(const HandModel& model, const ObstaclePoses& obstacles, FieldLook& look,
+                 std::span<PairCertificates> known, Report& report) noexcept;
 
 }  // namespace passung::tick

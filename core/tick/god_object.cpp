@@ -14,7 +14,7 @@ namespace {
 /// What the step `u` met and went more than `relieve` into, as contacts of the place where it began (cuts:
 /// god_object.h).
 void addCuts(const ProxyView& view, const Pose& X_met, const motion::Motion& u) noexcept {
-    const auto& [model, proxy, memory, report] = view;
+    const auto& [model, proxy, memory, report, obstacles] = view;
     const motion::Surroundings here = surroundings(model, proxy);
     const Pose back = proxy.X_WG * X_met.inverse();
     for (const contact::ContactPoint& met : memory.scratch) {
@@ -102,9 +102,9 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
 
 }  // namespace
 
-void sweepProxy(const HandModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
-                Pushes& pushes, Report& report) noexcept {
-    const MovingProxy moving{{model, proxy, memory, report}, hand, motion, pushes};
+void sweepProxy(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles, Proxy& proxy,
+                ProxyMotion& motion, QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
+    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, motion, pushes};
     if (!startProxy(moving)) {
         report.status |= kSuspended | kIterationLimit;
         noteLag(moving, false);

@@ -57,7 +57,7 @@ motion::Surroundings around(const HandModel& model, const Proxy& proxy, double l
 /// Pushes the proxy out of the overlap that a step's linearisation missed, around a rim for instance: the least motion
 /// that obeys the contacts found there.
 void relieve(const ProxyView& view, double reach, double left, LookBudget& budget) noexcept {
-    const auto& [model, proxy, memory, report] = view;
+    const auto& [model, proxy, memory, report, obstacles] = view;
     const double s = model.finest_cell;
     for (int i = 0; i < kReliefs && overlap(proxy) > std::max(model.margins.relieve, left); ++i) {
         const motion::ConstrainedMotion out =
@@ -70,9 +70,9 @@ void relieve(const ProxyView& view, double reach, double left, LookBudget& budge
 
 }  // namespace
 
-void correctProxy(const HandModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion,
-                  QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
-    const MovingProxy moving{{model, proxy, memory, report}, hand, motion, pushes};
+void correctProxy(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles, Proxy& proxy,
+                  ProxyMotion& motion, QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
+    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, motion, pushes};
     if (!startProxy(moving)) return;
     const double left = leftOf(model, overlap(proxy));
     for (int i = 0; i < kCorrections && overlap(proxy) > std::max(model.margins.accept, left); ++i) {
@@ -92,9 +92,9 @@ void correctProxy(const HandModel& model, const HandSample& hand, Proxy& proxy, 
     }
 }
 
-void moveProxy(const HandModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
-               Pushes& pushes, Report& report) noexcept {
-    const MovingProxy moving{{model, proxy, memory, report}, hand, motion, pushes};
+void moveProxy(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles, Proxy& proxy,
+               ProxyMotion& motion, QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
+    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, motion, pushes};
     const double s = model.finest_cell;
     const Pose X_before = proxy.X_WG;
     const double left = leftOf(model, overlap(proxy));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/field/distance_field.h"
 #include "core/tick/hand_state.h"
@@ -24,57 +25,49 @@ ProxyMargins marginsOf(const HandModel& model) {
     return {};
 }
 
-void addFields(HandModel& model, const scene::Scene& scene) {
-    const scene::SceneSpec& spec = scene.spec;
-    model.shell = &*scene.parts[scene.held]->shell;
-    model.reach = model.shell->reach();
-    model.edges = &*scene.parts[scene.held]->edges;
-    const bool two_way = spec.contact.two_way;
-    if (two_way) model.held_field = &*scene.parts[scene.held]->field;
-    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-        const bool held = i == scene.held;
-        if (!held)
-            model.obstacles.push_back({&*scene.parts[i]->field, spec.parts[i].X_WP,
-                                       two_way ? &*scene.parts[i]->shell : nullptr,
-                                       two_way ? &*scene.parts[i]->edges : nullptr});
-        if (held && !two_way) continue;
-        const double cell = scene.parts[i]->field->cell();
-        model.finest_cell = model.finest_cell > 0.0 ? std::min(model.finest_cell, cell) : cell;
+/// What the held part is to contact.
+void addHeld(HandModel& model, const Body& held) {
+    if (held.solid) {
+        model.held_solid = &*held.solid;
+        model.reach = closed_form::reachOf(*model.held_solid);
+    } else if (held.surface != nullptr) {
+        model.held_surface = held.surface;
+        model.reach = model.held_surface->reach();
+    } else {
+        model.shell = held.shell;
+        model.edges = held.edges;
+        model.reach = model.shell->reach();
+        if (model.contact.two_way) model.held_field = held.field;
     }
 }
 
-/// The held part's first, then the obstacles'.
-void addSolids(HandModel& model, const scene::Scene& scene) {
-    const auto solidOf = [&](std::size_t part) { return *closed_form::solidOf(*scene.parts[part]->shape); };
-    model.solids.push_back(solidOf(scene.held));
-    model.reach = closed_form::reachOf(model.solids.front());
-    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-        if (i == scene.held) continue;
-        model.solids.push_back(solidOf(i));
-        model.obstacles.push_back({nullptr, scene.spec.parts[i].X_WP});
+/// All parts but the held one.
+void addObstacles(HandModel& model, const World& world) {
+    const bool two_way = model.contact.two_way;
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+        if (i == model.body) continue;
+        const Body& body = world.bodies[i];
+        if (body.held) model.moving.push_back(static_cast<std::uint32_t>(model.obstacles.size()));
+        model.obstacles.push_back({.body = i,
+                                   .field = body.field,
+                                   .shell = two_way ? body.shell : nullptr,
+                                   .edges = two_way ? body.edges : nullptr,
+                                   .solid = body.solid ? &*body.solid : nullptr});
     }
 }
 
-/// The held part's triangles, and those of all obstacles in the world.
-void addSurfaces(HandModel& model, const scene::Scene& scene) {
-    model.held_surface = scene.parts[scene.held]->clusters.get();
-    model.reach = model.held_surface->reach();
-    std::vector<geometry::PlacedTree> obstacles;
-    std::size_t triangles = 0;
-    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-        if (i == scene.held) continue;
-        obstacles.push_back({scene.parts[i]->clusters.get(), scene.spec.parts[i].X_WP});
-        model.obstacles.push_back({nullptr, obstacles.back().X});
-        model.first_triangles.push_back(static_cast<std::uint32_t>(triangles));
-        triangles += obstacles.back().tree->triangleCount();
-    }
-    model.obstacle_surface.emplace(obstacles);
+/// Of the fields that are looked at.
+double finestCellOf(const HandModel& model) {
+    double finest = model.held_field != nullptr ? model.held_field->cell() : std::numeric_limits<double>::infinity();
+    for (const Obstacle& obstacle : model.obstacles)
+        if (obstacle.field != nullptr) finest = std::min(finest, obstacle.field->cell());
+    return std::isfinite(finest) ? finest : 0.0;
 }
 
 /// Of the held part's surface about its origin [m].
 double gyrationRadius(const HandModel& model, const scene::Scene& scene) {
     if (model.shell != nullptr) return model.shell->gyrationRadius();
-    const geometry::TriangleMesh& mesh = scene.parts[scene.held]->mesh;
+    const geometry::TriangleMesh& mesh = scene.parts[model.body]->mesh;
     double area = 0.0, second = 0.0;
     for (const auto& triangle : mesh.triangles) {
         const Vec3 &a = mesh.vertices[triangle[0]], &b = mesh.vertices[triangle[1]], &c = mesh.vertices[triangle[2]];
@@ -88,13 +81,13 @@ double gyrationRadius(const HandModel& model, const scene::Scene& scene) {
 /// The coefficients of the held part with each obstacle, if any rubs.
 void addFriction(HandModel& model, const scene::Scene& scene) {
     const auto& parts = scene.spec.parts;
-    const scene::PartSpec& held = parts[scene.held];
+    const scene::PartSpec& held = parts[model.body];
     std::vector<motion::Friction> friction;
     bool any = false;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        if (i == scene.held) continue;
-        friction.push_back({std::sqrt(held.friction * parts[i].friction),
-                            std::sqrt(held.sliding_friction * parts[i].sliding_friction)});
+    for (const Obstacle& obstacle : model.obstacles) {
+        const scene::PartSpec& other = parts[obstacle.body];
+        friction.push_back(
+            {std::sqrt(held.friction * other.friction), std::sqrt(held.sliding_friction * other.sliding_friction)});
         any = any || friction.back().at_rest > 0.0;
     }
     if (any) model.friction = std::move(friction);
@@ -110,24 +103,27 @@ void addStages(HandModel& model, StageList<stage...>) {
 
 }  // namespace
 
-HandModel makeModel(const scene::Scene& scene) {
-    HandModel model;
+HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size_t hand) {
     const scene::SceneSpec& spec = scene.spec;
+    HandModel model;
+    model.bodies = world.bodies;
+    model.body = spec.heldBy(hand);
+    model.geometry = world.geometry;
     model.contact = spec.contact;
-    model.limits = spec.limits;
-    model.registration = spec.registration;
-    model.start_gate = spec.start_gate;
+    const scene::HandSpec device = spec.hand(hand);
+    model.limits = device.limits;
+    model.registration = device.registration;
+    model.start_gate = device.start_gate;
     model.effects = spec.effects;
     model.record_hand_depth = spec.record_hand_depth;
     model.display_wrench = spec.display_wrench;
-    model.X_WG_start = spec.parts[scene.held].X_WP;
-    model.geometry = scene::geometryOf(spec).geometry;
-    if (model.geometry == scene::Geometry::ClosedForm)
-        addSolids(model, scene);
-    else if (model.geometry == scene::Geometry::Surface)
-        addSurfaces(model, scene);
-    else
-        addFields(model, scene);
+    const Body& held = world.bodies[model.body];
+    model.X_WG_start = held.X_WP_start;
+    addHeld(model, held);
+    addObstacles(model, world);
+    if (!world.still_surface.empty()) model.still_surface = &world.still_surface.front();
+    model.first_triangles = world.first_triangles;
+    model.finest_cell = finestCellOf(model);
     addFriction(model, scene);
     const double ratio = spec.contact.rotational_stiffness / spec.contact.stiffness;
     model.metric_radius = ratio > 0.0 ? std::sqrt(ratio) : std::max(gyrationRadius(model, scene), 1e-6);

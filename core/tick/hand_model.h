@@ -1,25 +1,25 @@
 #pragma once
 
-#include <optional>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/base/types.h"
-#include "core/closed_form/solid.h"
-#include "core/geometry/cluster_tree.h"
 #include "core/motion/friction.h"
-#include "core/scene/contact_geometry.h"
-#include "core/scene/scene.h"
 #include "core/tick/stage.h"
+#include "core/tick/world.h"
 
 namespace passung::tick {
 
-/// An obstacle fixed in the world, as what its geometry is: a distance field, one of HandModel::solids, or a share of
-/// HandModel::obstacle_surface.
+/// Another part than the held one, as what its geometry is: a distance field, a smooth solid, or triangles. Where it is
+/// says ObstaclePoses (proxy_state.h).
 struct Obstacle {
-    const field::DistanceField* field;  // Geometry::Field only
-    Pose X_WF;
-    const shell::SphereTree* shell = nullptr;  // two-way contact only
-    const shell::EdgeCurves* edges = nullptr;  // with the shell
+    std::size_t body;                                 // in World::bodies
+    const field::DistanceField* field = nullptr;      // Geometry::Field only
+    const shell::SphereTree* shell = nullptr;         // two-way contact only
+    const shell::EdgeCurves* edges = nullptr;         // with the shell
+    const closed_form::SmoothSolid* solid = nullptr;  // Geometry::ClosedForm only
 };
 
 /// Overlap of a proxy [m].
@@ -29,19 +29,22 @@ struct ProxyMargins {
     double accept = 0.0;   // after a step: more, and it is taken back
 };
 
-/// Everything that does not change while a trial runs. Borrows the scene's parts.
+/// A hand with the part that it holds: what does not change while a trial runs. Borrows the world.
 struct HandModel {
+    std::span<const Body> bodies;  // World::bodies
+    std::size_t body = 0;          // that it holds, among them
     scene::Geometry geometry = scene::Geometry::Field;
     // Geometry::Field only
     const shell::SphereTree* shell = nullptr;
     const shell::EdgeCurves* edges = nullptr;
-    const field::DistanceField* held_field = nullptr;  // two-way contact only
-    std::vector<closed_form::SmoothSolid> solids;      // Geometry::ClosedForm only: the held part, the obstacles
+    const field::DistanceField* held_field = nullptr;      // two-way contact only
+    const closed_form::SmoothSolid* held_solid = nullptr;  // Geometry::ClosedForm only
     // Geometry::Surface only
     const geometry::ClusterTree* held_surface = nullptr;
-    std::optional<geometry::ClusterTree> obstacle_surface;  // of all obstacles, in the world
-    std::vector<std::uint32_t> first_triangles;             // in that, of each obstacle
-    std::vector<Obstacle> obstacles;
+    const geometry::ClusterTree* still_surface = nullptr;  // of all obstacles that rest, in the world; may be null
+    std::span<const std::uint32_t> first_triangles;        // in that, of each
+    std::vector<Obstacle> obstacles;                       // in the order of the scene
+    std::vector<std::uint32_t> moving;                     // those of them that other hands hold
     std::vector<motion::Friction> friction;  // of each obstacle with the held part; empty: the scene names none
     Pose X_WG_start;
     scene::ContactSpec contact;
@@ -74,7 +77,8 @@ struct HandModel {
     }
 };
 
-/// What the scene fixes, and those of AllStages that it needs. `scene` must outlive the result.
-HandModel makeModel(const scene::Scene& scene);
+/// What the scene fixes for hand `hand`, and those of AllStages that it needs. `world` is the scene's and outlives the
+/// result. @pre `hand` < scene.spec.handCount()
+HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size_t hand);
 
 }  // namespace passung::tick

@@ -58,8 +58,9 @@ void addQueryMemory(const HandModel& model, Proxy& proxy, QueryMemory& memory) {
 
 }  // namespace
 
-HandState makeState(const HandModel& model) {
+HandState makeHandState(const HandModel& model) {
     HandState state;
+    for (const Obstacle& obstacle : model.obstacles) state.X_WO.push_back(model.bodies[obstacle.body].X_WP_start);
     state.engaged = model.start_gate.hold_ticks <= 0;
     state.X_WG = state.step.X_WH_followed = model.X_WG_start;
     state.pairs.resize(model.obstacles.size() + 1);

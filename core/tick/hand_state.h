@@ -41,20 +41,14 @@ using AllStages = StageList<kInputGuard, kEnergyAccount, kStartGate,            
                             kContactShares, kOutputDelay, kPassivityController,  // what goes out
                             kNoWrench, kOutputLimits>;
 
-/// Of the ticks so far. Owner: step.
-struct TickCount {
-    static constexpr bool kOnlyRead = true;
-    std::int64_t tick = 0;
-    std::uint64_t hash = 0xcbf29ce484222325u;  // of all outputs, exact bits
-};
-
-/// Everything that a tick carries to the next: the stages' own states. Sized by makeState; a tick never allocates.
-struct HandState : Parts<TickCount, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion, ProxyFilter,
+/// Everything of a hand that a tick carries to the next: the stages' own states. Sized by makeHandState; a tick never
+/// allocates.
+struct HandState : Parts<ObstaclePoses, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion, ProxyFilter,
                          ClosedFormHold, FilteredHold, ClosedFormMemory, SurfaceFollow, HandVelocity, ToolMotion,
                          Stretch, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
 
 /// The state before the first tick, with all memory that the ticks will need.
-HandState makeState(const HandModel& model);
+HandState makeHandState(const HandModel& model);
 
 /// Runs a stage on its parts. rt-safe.
 template <const auto& stage>

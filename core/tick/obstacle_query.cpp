@@ -46,24 +46,25 @@ contact::QueryAnswer query(const field::DistanceField& field, const Pose& X_WF, 
 /// The obstacle's points against the held part's field. If the held part moves by u, φ at a fixed point changes by
 /// -g · u, g the gradient of its field: told with normal and gradient reversed such a point is a contact like any
 /// other.
-contact::QueryAnswer queryBack(const HandModel& model, const Obstacle& obstacle, const Pose& X_WS,
+contact::QueryAnswer queryBack(const HandModel& model, const Obstacle& obstacle, const Pose& X_WO, const Pose& X_WS,
                                const contact::QueryRequest& request, contact::QueryWorkspace& workspace,
                                contact::ContactManifold& manifold, contact::ShellCertificates* known) noexcept {
     const std::size_t first = manifold.size();
-    contact::QueryAnswer answer = query(*model.held_field, X_WS, *obstacle.shell, *obstacle.edges, obstacle.X_WF,
-                                        request, workspace, manifold, known);
+    contact::QueryAnswer answer =
+        query(*model.held_field, X_WS, *obstacle.shell, *obstacle.edges, X_WO, request, workspace, manifold, known);
     manifold.reverseFrom(first);
     answer.load.force = -answer.load.force;
-    answer.load.torque = (obstacle.X_WF.p - X_WS.p).cross(answer.load.force) - answer.load.torque;
+    answer.load.torque = (X_WO.p - X_WS.p).cross(answer.load.force) - answer.load.torque;
     answer.normal_W = -answer.normal_W;
     return answer;
 }
 
 }  // namespace
 
-contact::QueryAnswer queryObstacles(const HandModel& model, const Pose& X_WS, contact::QueryRequest request,
-                                    contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
-                                    std::span<ObstaclePush> pushes, std::span<PairCertificates> known) noexcept {
+contact::QueryAnswer queryObstacles(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WS,
+                                    contact::QueryRequest request, contact::QueryWorkspace& workspace,
+                                    contact::ContactManifold& manifold, std::span<ObstaclePush> pushes,
+                                    std::span<PairCertificates> known) noexcept {
     request.mode = model.contact.mode;
     request.max_nodes = model.contact.budget_nodes;
     contact::QueryAnswer all;
@@ -82,11 +83,12 @@ contact::QueryAnswer queryObstacles(const HandModel& model, const Pose& X_WS, co
     };
     for (const Obstacle& obstacle : model.obstacles) {
         const std::size_t first = manifold.size();
+        const Pose& X_WO = obstacles.X_WO[place];
         PairCertificates* const pair = known.empty() ? nullptr : &known[place];
-        take(query(*obstacle.field, obstacle.X_WF, *model.shell, *model.edges, X_WS, request, workspace, manifold,
+        take(query(*obstacle.field, X_WO, *model.shell, *model.edges, X_WS, request, workspace, manifold,
                    pair != nullptr ? &pair->held : nullptr));
         if (obstacle.shell != nullptr)
-            take(queryBack(model, obstacle, X_WS, request, workspace, manifold,
+            take(queryBack(model, obstacle, X_WO, X_WS, request, workspace, manifold,
                            pair != nullptr ? &pair->obstacle : nullptr));
         manifold.assign(first, place++);
     }

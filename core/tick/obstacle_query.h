@@ -15,9 +15,9 @@ namespace passung::tick {
 /// mode and budget (per obstacle and way) replace those of `request`. Appends to `manifold`; returns the deepest or
 /// closest answer, with nodes added up and the least quality. Each obstacle's own load is added to its push, if
 /// `pushes` are given; what is `known` of each is made use of. rt-safe.
-contact::QueryAnswer queryObstacles(const HandModel& model, const Pose& X_WS, contact::QueryRequest request,
-                                    contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
-                                    std::span<ObstaclePush> pushes = {},
+contact::QueryAnswer queryObstacles(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WS,
+                                    contact::QueryRequest request, contact::QueryWorkspace& workspace,
+                                    contact::ContactManifold& manifold, std::span<ObstaclePush> pushes = {},
                                     std::span<PairCertificates> known = {}) noexcept;
 
 /// What a query took, in units of about 45 ns: nodes, points, and contacts twice. rt-safe.

@@ -49,15 +49,15 @@ contact::QueryRequest penaltyRequest(scene::PenaltyVariant variant) noexcept {
     return {.gradients = false, .load = isWeighted(variant), .every_node = true, .refine = true};
 }
 
-void findContactsAtHand(const HandModel& model, const HandSample& hand, Proxy& proxy, QueryMemory& memory,
-                        Pushes& pushes, AreaLoad& load, ContactRecord& record, HandDepth& depth,
+void findContactsAtHand(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles, Proxy& proxy,
+                        QueryMemory& memory, Pushes& pushes, AreaLoad& load, ContactRecord& record, HandDepth& depth,
                         Report& report) noexcept {
     proxy.X_WG = hand.X_WH;
     proxy.manifold.clear();
     clearPushes(pushes);
     const contact::QueryAnswer answer =
-        queryObstacles(model, hand.X_WH, penaltyRequest(model.contact.variant), memory.workspace, proxy.manifold,
-                       pushes.pushes, memory.near_hand);
+        queryObstacles(model, obstacles, hand.X_WH, penaltyRequest(model.contact.variant), memory.workspace,
+                       proxy.manifold, pushes.pushes, memory.near_hand);
     account(answer, report);
     load.load = answer.load;
     record.contacts = static_cast<std::uint32_t>(answer.contacts);

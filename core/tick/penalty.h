@@ -23,8 +23,8 @@ contact::QueryRequest penaltyRequest(scene::PenaltyVariant variant) noexcept;
 
 /// Stage: contact at the device's pose. Fills the manifold, or the load, by penaltyRequest. The proxy follows the
 /// device: X_WG = X_WH.
-void findContactsAtHand(const HandModel& model, const HandSample& hand, Proxy& proxy, QueryMemory& memory,
-                        Pushes& pushes, AreaLoad& load, ContactRecord& record, HandDepth& depth,
+void findContactsAtHand(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles, Proxy& proxy,
+                        QueryMemory& memory, Pushes& pushes, AreaLoad& load, ContactRecord& record, HandDepth& depth,
                         Report& report) noexcept;
 inline constexpr StageOf kContactsAtHand{
     findContactsAtHand,

@@ -125,11 +125,12 @@ private:
 
 /// Puts the tool at `X_WG` and looks around: points nearer than `reach`, and up to `search` how far the nearest is.
 void lookAt(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept {
-    const auto& [model, proxy, memory, report] = view;
+    const auto& [model, proxy, memory, report, obstacles] = view;
     proxy.manifold.clear();
     const contact::QueryRequest request{
         .collect_below = reach, .search_below = std::max(reach, search), .refine = true};
-    const contact::QueryAnswer answer = queryObstacles(model, X_WG, request, memory.workspace, proxy.manifold);
+    const contact::QueryAnswer answer =
+        queryObstacles(model, obstacles, X_WG, request, memory.workspace, proxy.manifold);
     account(answer, report);
     proxy.X_WG = X_WG;
     proxy.manifold_reach = reach;
@@ -159,7 +160,7 @@ double shareWithin(double longest, const motion::Motion& w, const motion::Motion
 /// Moves by `u`, or as much of it as makes the balance's rest smaller; false, and the tool stays, if none does.
 bool makeStep(const ProxyView& view, ToolBalance& balance, const motion::Motion& u, double reach,
               double search) noexcept {
-    const auto& [model, proxy, memory, report] = view;
+    const auto& [model, proxy, memory, report, obstacles] = view;
     const Pose X_here = proxy.X_WG;
     const double before = balance.size();
     double share = 1.0;
@@ -176,9 +177,9 @@ bool makeStep(const ProxyView& view, ToolBalance& balance, const motion::Motion&
 
 }  // namespace
 
-void settleTool(const HandModel& model, const HandSample& hand, Proxy& proxy, ToolMotion& tool, QueryMemory& memory,
-                Pushes& pushes, Report& report) noexcept {
-    const ProxyView view{model, proxy, memory, report};
+void settleTool(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles, Proxy& proxy,
+                ToolMotion& tool, QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
+    const ProxyView view{model, proxy, memory, report, obstacles};
     startTool(view, hand, tool);
     ToolBalance balance(model, hand, proxy, tool);
     balance.update(proxy);

@@ -52,8 +52,8 @@ inline constexpr int kToolSteps = 8;
 inline constexpr double kSettled = 1e-8;  // [m], of q/D
 
 /// Stage. proxy.h's record and virtual_coupling.h follow. rt-safe.
-void settleTool(const HandModel& model, const HandSample& hand, Proxy& proxy, ToolMotion& tool, QueryMemory& memory,
-                Pushes& pushes, Report& report) noexcept;
+void settleTool(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles, Proxy& proxy,
+                ToolMotion& tool, QueryMemory& memory, Pushes& pushes, Report& report) noexcept;
 inline constexpr StageOf kPenaltyTool{
     settleTool,
     {.name = "penalty tool",

@@ -6,9 +6,9 @@
 
 #include "core/surface/nearest_faces.h"
 #include "core/tick/closed_form_proxy.h"
-#include "core/tick/hand_model.h"
-#include "core/tick/hand_state.h"
 #include "core/tick/obstacle_query.h"
+#include "core/tick/tick_model.h"
+#include "core/tick/tick_state.h"
 
 namespace passung::tick {
 
@@ -39,12 +39,12 @@ Vec3 wayToContact(const HandModel& model, HandState& state) {
     if (model.obstacles.empty()) return Vec3(0.02, 0.0, 0.0);
     if (model.hasClosedForm()) return wayToContact(model.X_WG_start, state);
     if (model.hasSurfaces()) {
-        const auto nearest = surface::nearestFaces(*model.held_surface, *model.obstacle_surface, model.X_WG_start);
+        const auto nearest = surface::nearestFaces(*model.held_surface, *model.still_surface, model.X_WG_start);
         return -(nearest.distance + kPressed) * nearest.n;
     }
     state.scratch.clear();
     const contact::QueryAnswer answer =
-        queryObstacles(model, model.X_WG_start, {.search_below = 1.0}, state.workspace, state.scratch);
+        queryObstacles(model, state, model.X_WG_start, {.search_below = 1.0}, state.workspace, state.scratch);
     return -(answer.phi + kPressed) * answer.normal_W;
 }
 
@@ -56,11 +56,12 @@ scene::Scene unregistered(scene::Scene scene) {
 
 }  // namespace
 
-PressedRun::PressedRun(const scene::Scene& scene) : models_(unregistered(scene)), X_WG_start_(models_[0].X_WG_start) {
+PressedRun::PressedRun(const scene::Scene& scene)
+    : models_(unregistered(scene)), X_WG_start_(models_[0].hands.front().X_WG_start) {
     states_.push_back(makeState(models_[0]));
-    way_ = wayToContact(models_[0], states_[0]);
+    way_ = wayToContact(models_[0].hands.front(), states_[0].hands.front());
     aside_ = way_.unitOrthogonal();
-    states_[0].engaged = true;
+    states_[0].hands.front().engaged = true;
 }
 
 PressedRun::~PressedRun() = default;

@@ -27,7 +27,7 @@ public:
 
 private:
     SceneModels models_;             // of the one scene
-    std::vector<HandState> states_;  // its one
+    std::vector<TickState> states_;  // its one
     Pose X_WG_start_;
     Vec3 way_, aside_;  // to the pressed pose [m]; unit, square to it
 };

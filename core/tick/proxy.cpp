@@ -78,7 +78,7 @@ double overlap(const Proxy& proxy) noexcept { return std::max(0.0, -proxy.cleara
 bool isInside(const contact::ContactPoint& contact) noexcept { return contact.phi < 0.0 && !(contact.radius > 0.0); }
 
 void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept {
-    const auto& [model, proxy, memory, report] = view;
+    const auto& [model, proxy, memory, report, obstacles] = view;
     memory.scratch.clear();
     contact::QueryRequest request{.collect_below = reach,
                                   .search_below = search,
@@ -89,7 +89,7 @@ void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double s
     // besides, and what that is depends on what is known.
     const bool whole = model.contact.budget_nodes == 0;
     if (whole) request.every_below = model.margins.accept;
-    contact::QueryAnswer answer = queryObstacles(model, X_WG, request, memory.workspace, memory.scratch, {},
+    contact::QueryAnswer answer = queryObstacles(model, obstacles, X_WG, request, memory.workspace, memory.scratch, {},
                                                  whole ? std::span(memory.near_proxy) : std::span<PairCertificates>());
     account(answer, report);
     std::swap(proxy.manifold, memory.scratch);
@@ -103,20 +103,20 @@ void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double s
     if (!(proxy.clearance_bound > reach)) return;
     request.prove = true;
     memory.scratch.clear();
-    answer = queryObstacles(model, X_WG, request, memory.workspace, memory.scratch);
+    answer = queryObstacles(model, obstacles, X_WG, request, memory.workspace, memory.scratch);
     account(answer, report);
     proxy.clearance_bound = std::max(reach, answer.lower_bound);
 }
 
 bool lookAround(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept {
-    const auto& [model, proxy, memory, report] = view;
+    const auto& [model, proxy, memory, report, obstacles] = view;
     if (!model.hasNodeBudget()) {
         queryAround(view, X_WG, reach, search);
         return true;
     }
     FieldLook& look = proxy.step.look;
     if (!look.open) beginLook(look, X_WG, reach, search);
-    if (!goOnLooking(model, look, memory.near_proxy, report)) return false;
+    if (!goOnLooking(model, obstacles, look, memory.near_proxy, report)) return false;
     std::swap(memory.scratch, proxy.manifold);
     std::swap(proxy.manifold, look.found);
     proxy.cuts = 0;
@@ -148,8 +148,8 @@ bool overlapsBetween(const ProxyView& view, const Pose& X_from, const Pose& X_to
     view.memory.scratch.clear();
     const contact::QueryRequest request{
         .collect_below = -1e300, .search_below = -accepted, .facing = view.model.contact.two_way, .edges = true};
-    const contact::QueryAnswer answer =
-        queryObstacles(view.model, X, request, view.memory.workspace, view.memory.scratch, {}, view.memory.near_proxy);
+    const contact::QueryAnswer answer = queryObstacles(view.model, view.obstacles, X, request, view.memory.workspace,
+                                                       view.memory.scratch, {}, view.memory.near_proxy);
     account(answer, view.report);
     return answer.found;
 }
@@ -236,14 +236,14 @@ AllowedMotion allowedMotion(const MovingProxy& moving, const motion::Motion& wan
 
 void followHand(const HandModel&, const HandSample& hand, Proxy& proxy) noexcept { proxy.X_WG = hand.X_WH; }
 
-void filterProxy(const HandModel& model, const HandSample& hand, ProxyFilter& filter, Proxy& proxy, QueryMemory& memory,
-                 Report& report) noexcept {
+void filterProxy(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles, ProxyFilter& filter,
+                 Proxy& proxy, QueryMemory& memory, Report& report) noexcept {
     if (hand.relocated) filter.has_last_proxy = false;  // the proxy was set to the hand
     const double alpha = 1.0 - std::exp(-2.0 * std::numbers::pi * model.contact.proxy_filter * kTickSeconds);
     const bool in_contact = proxy.clearance < model.margins.keep;
     // A step that is still being looked at begins where the proxy is.
     if (in_contact && filter.has_last_proxy && !proxy.step.look.open) {
-        const ProxyView view{model, proxy, memory, report};
+        const ProxyView view{model, proxy, memory, report, obstacles};
         const motion::Motion u = unconstrainedMotion(model, filter.X_WG_last, proxy.X_WG);
         const double reach = proxy.manifold_reach;
         const double accepted = std::max(model.margins.accept, overlap(proxy));
@@ -264,11 +264,11 @@ void describeProxy(const HandModel&, const Proxy& proxy, ContactRecord& record) 
     record.contacts = static_cast<std::uint32_t>(std::count_if(proxy.manifold.begin(), end, isInside));
 }
 
-void measureHandDepth(const HandModel& model, const HandSample& hand, QueryMemory& memory, HandDepth& depth,
-                      Report& report) noexcept {
+void measureHandDepth(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles,
+                      QueryMemory& memory, HandDepth& depth, Report& report) noexcept {
     memory.scratch.clear();
-    const contact::QueryAnswer answer = queryObstacles(model, hand.X_WH, {.collect_below = -1e300}, memory.workspace,
-                                                       memory.scratch, {}, memory.near_hand);
+    const contact::QueryAnswer answer = queryObstacles(model, obstacles, hand.X_WH, {.collect_below = -1e300},
+                                                       memory.workspace, memory.scratch, {}, memory.near_hand);
     report.nodes_visited += static_cast<std::uint32_t>(answer.nodes_visited);
     report.work += workOf(answer);
     depth.hand_depth = std::max(0.0, -answer.phi);

@@ -35,6 +35,7 @@ struct ProxyView {
     Proxy& proxy;
     QueryMemory& memory;
     Report& report;
+    const ObstaclePoses& obstacles;
 };
 
 /// What they move it by, towards the hand.
@@ -148,8 +149,8 @@ struct ProxyFilter {
 /// Low-pass (only if the scene names its corner f_c), while in contact:
 ///   G_k = G_{k-1} ⊕ α (G* ⊖ G_{k-1}),  α = 1 - exp(-2π f_c T); dropped for a tick where it would cost overlap, or
 /// more nodes than a budget leaves.
-void filterProxy(const HandModel& model, const HandSample& hand, ProxyFilter& filter, Proxy& proxy, QueryMemory& memory,
-                 Report& report) noexcept;
+void filterProxy(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles, ProxyFilter& filter,
+                 Proxy& proxy, QueryMemory& memory, Report& report) noexcept;
 inline constexpr StageOf kProxyFilter{
     filterProxy,
     {.name = "proxy filter",
@@ -173,8 +174,8 @@ inline constexpr StageOf kProxyRecord{
      .reason = [](const HandModel&) { return "overlap and contacts at the proxy, and its lag, for the record"; }}};
 
 /// Depth of the held part at the hand's pose: only for the record, an extra query.
-void measureHandDepth(const HandModel& model, const HandSample& hand, QueryMemory& memory, HandDepth& depth,
-                      Report& report) noexcept;
+void measureHandDepth(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles,
+                      QueryMemory& memory, HandDepth& depth, Report& report) noexcept;
 inline constexpr StageOf kHandDepth{
     measureHandDepth,
     {.name = "hand depth",

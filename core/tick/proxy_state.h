@@ -12,6 +12,12 @@
 
 namespace passung::tick {
 
+/// Where the obstacles are, in the order of HandModel::obstacles. Nobody writes it but step(), before the stages.
+struct ObstaclePoses {
+    static constexpr bool kOnlyRead = true;
+    std::vector<Pose> X_WO;
+};
+
 /// A look from a pose under a budget of nodes, and how far it has come (field_look.h).
 struct FieldLook {
     bool open = false;  // it goes on in the next tick

@@ -1,7 +1,7 @@
 #include "core/tick/scene_sequence.h"
 
-#include "core/tick/hand_model.h"
-#include "core/tick/hand_state.h"
+#include "core/tick/tick_model.h"
+#include "core/tick/tick_state.h"
 
 namespace passung::tick {
 
@@ -31,15 +31,18 @@ SceneModels::~SceneModels() = default;
 
 std::size_t SceneModels::size() const noexcept { return models_.size(); }
 
-const HandModel& SceneModels::operator[](std::size_t i) const noexcept { return models_[i]; }
+const TickModel& SceneModels::operator[](std::size_t i) const noexcept { return models_[i]; }
 
-std::span<const Stage> SceneModels::stages(std::size_t i) const noexcept { return models_[i].stages; }
+std::span<const Stage> SceneModels::stages(std::size_t i) const noexcept { return models_[i].hands.front().stages; }
 
 std::size_t SceneModels::memoryBytes(std::size_t i) const noexcept {
     std::size_t bytes = 0;
-    const HandModel& model = models_[i];
-    if (model.hasSurfaces()) bytes += model.held_surface->memoryBytes() + model.obstacle_surface->memoryBytes();
-    for (const auto& solid : model.solids) bytes += bytesOf(solid);
+    const World& world = models_[i].world;
+    for (const HandModel& hand : models_[i].hands)
+        if (hand.hasSurfaces()) bytes += hand.held_surface->memoryBytes();
+    for (const geometry::ClusterTree& still : world.still_surface) bytes += still.memoryBytes();
+    for (const Body& body : world.bodies)
+        if (body.solid) bytes += bytesOf(*body.solid);
     return bytes;
 }
 
@@ -56,15 +59,16 @@ std::uint64_t SceneSequence::hash() const noexcept { return states_[current_].ha
 
 std::vector<PairAccount> SceneSequence::pairs() const {
     std::vector<PairAccount> all;
-    for (const HandState& state : states_) all.insert(all.end(), state.pairs.begin(), state.pairs.end());
+    for (const TickState& state : states_)
+        for (const HandState& hand : state.hands) all.insert(all.end(), hand.pairs.begin(), hand.pairs.end());
     return all;
 }
 
 TickOutput SceneSequence::step(const DeviceReading& reading) noexcept {
     if (engaged_) rendered_ += reading.periods;
     if (engaged_ && rendered_ >= turns_[current_].periods && current_ + 1 < turns_.size()) {
-        const HandState& before = states_[current_];
-        HandState& next = states_[++current_];
+        const TickState& before = states_[current_];
+        TickState& next = states_[++current_];
         next.tick = before.tick;
         next.hash = before.hash;
         engaged_ = false;

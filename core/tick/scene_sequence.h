@@ -14,7 +14,7 @@ namespace passung::tick {
 
 inline constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
-/// The models (hand_model.h) of scenes, for who need not look into them. A model stays where it is when the whole
+/// The models (tick_model.h) of scenes, for who need not look into them. A model stays where it is when the whole
 /// moves.
 class SceneModels {
 public:
@@ -29,7 +29,7 @@ public:
 
     std::size_t size() const noexcept;
     /// @pre `i` < size()
-    const HandModel& operator[](std::size_t i) const noexcept;
+    const TickModel& operator[](std::size_t i) const noexcept;
     /// Those of the scene number `i`, in the order of the tick. @pre `i` < size()
     std::span<const Stage> stages(std::size_t i) const noexcept;
     /// Of the surfaces and smooth solids that scene number `i` computes contact from [bytes]; fields and points are its
@@ -37,12 +37,12 @@ public:
     std::size_t memoryBytes(std::size_t i) const noexcept;
 
 private:
-    std::vector<HandModel> models_;
+    std::vector<TickModel> models_;
 };
 
 /// One of the scenes that are rendered one after the other in one attempt.
 struct SceneTurn {
-    const HandModel* model = nullptr;  // outlives the sequence
+    const TickModel* model = nullptr;  // outlives the sequence
     std::int64_t periods = kForever;   // haptic periods from its first engaged tick until the next scene's turn, > 0
 };
 
@@ -69,7 +69,7 @@ public:
 
 private:
     std::vector<SceneTurn> turns_;
-    std::vector<HandState> states_;  // one per turn
+    std::vector<TickState> states_;  // one per turn
     std::size_t current_ = 0;
     bool engaged_ = false;       // in the current turn
     std::int64_t rendered_ = 0;  // periods since it engaged

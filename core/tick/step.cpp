@@ -3,8 +3,8 @@
 #include <bit>
 #include <cmath>
 
-#include "core/tick/hand_model.h"
-#include "core/tick/hand_state.h"
+#include "core/tick/tick_model.h"
+#include "core/tick/tick_state.h"
 
 namespace passung::tick {
 
@@ -56,10 +56,10 @@ void store(std::array<float, 4>& into, const Quat& q) noexcept {
     into = {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z())};
 }
 
-}  // namespace
-
-TickOutput step(const HandModel& model, HandState& state, const DeviceReading& reading,
-                const StageWatch* watch) noexcept {
+/// One hand's turn.
+TickOutput stepHand(const HandModel& model, TickState& whole, HandState& state, const DeviceReading& reading,
+                    const StageWatch* watch) noexcept {
+    for (const std::uint32_t i : model.moving) state.X_WO[i] = whole.X_WP[model.obstacles[i].body];
     TickFrame frame;
     frame.reading = reading;
     for (std::size_t i = 0; i < model.stages.size(); ++i) {
@@ -70,9 +70,29 @@ TickOutput step(const HandModel& model, HandState& state, const DeviceReading& r
     }
     if (state.engaged) frame.status |= kEngaged;
     if (reading.periods > 1) frame.status |= kOverrun;
-    mixOutputs(state.hash, frame, state.X_WG);
-    ++state.tick;
+    whole.X_WP[model.body] = state.X_WG;
     return {frame.F_D_B, frame, state.X_WG};
+}
+
+}  // namespace
+
+void step(const TickModel& model, TickState& state, std::span<const DeviceReading> readings,
+          std::span<TickOutput> outputs, const StageWatch* watch) noexcept {
+    const std::size_t count = model.hands.size();
+    const std::size_t first = static_cast<std::size_t>(state.tick) % count;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t hand = (first + i) % count;
+        outputs[hand] = stepHand(model.hands[hand], state, state.hands[hand], readings[hand], watch);
+    }
+    for (const TickOutput& output : outputs) mixOutputs(state.hash, output.frame, output.X_WG);
+    ++state.tick;
+}
+
+TickOutput step(const TickModel& model, TickState& state, const DeviceReading& reading,
+                const StageWatch* watch) noexcept {
+    TickOutput output;
+    step(model, state, std::span(&reading, 1), std::span(&output, 1), watch);
+    return output;
 }
 
 TickRecord makeRecord(std::int64_t tick, const DeviceReading& reading, const TickOutput& output) noexcept {

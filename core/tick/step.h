@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "core/base/tick_record.h"
 #include "core/base/types.h"
@@ -9,6 +10,9 @@
 #include "core/tick/tick_frame.h"
 
 namespace passung::tick {
+
+struct TickModel;
+struct TickState;
 
 /// What one tick works on; dies with it.
 struct TickFrame : Parts<Reading, HandSample, AreaLoad, ContactRecord, HandDepth, EnergyRecord, HandWrench,
@@ -23,15 +27,20 @@ struct TickOutput {
 
 /// Who is told after every stage of a tick that it has run, to measure what it costs. @pre `after` is rt-safe.
 struct StageWatch {
-    void (*after)(void* context, std::size_t stage) noexcept;  // `stage`: place in the model's list
+    void (*after)(void* context, std::size_t stage) noexcept;  // `stage`: place in the hand's list
     void* context;
 };
 
-/// One tick of the haptic loop: a plain function over values (hand_model.h, hand_state.h). Same model, state and
-/// reading: same bits.
-///   It walks the model's stages; each sees the parts of state and frame that it declares (stage.h). Nothing allocates,
-///   locks or throws, and every loop has a bound. rt-safe.
-TickOutput step(const HandModel& model, HandState& state, const DeviceReading& reading,
+/// One tick of the haptic loop: a plain function over values (tick_model.h, tick_state.h). Same model, state and
+/// readings: same bits.
+///   The hands take turns, in an order that goes round from tick to tick. Each walks its model's stages; each of these
+/// sees the parts of state and frame that it declares (stage.h). While one hand's part moves all other parts rest.
+/// Nothing allocates, locks or throws, and every loop has a bound. rt-safe.
+/// @pre a reading and an output for each hand
+void step(const TickModel& model, TickState& state, std::span<const DeviceReading> readings,
+          std::span<TickOutput> outputs, const StageWatch* watch = nullptr) noexcept;
+/// The same for a scene of one hand.
+TickOutput step(const TickModel& model, TickState& state, const DeviceReading& reading,
                 const StageWatch* watch = nullptr) noexcept;
 
 /// The record of a tick: inputs exact, outputs as 32-bit floats. rt-safe.

@@ -30,7 +30,7 @@ void noteRows(const HandModel& model, const surface::SurfaceProxy& surface, Push
 SurfaceFollow surfaceFollow(const HandModel& model) {
     SurfaceFollow follow;
     follow.surface.emplace(
-        *model.held_surface, *model.obstacle_surface,
+        *model.held_surface, *model.still_surface,
         surface::SurfaceSettings{.metric_radius = model.metric_radius, .gap = kSurfaceGap, .budget = kSurfaceBudget});
     follow.surface->place(model.X_WG_start);
     follow.surface->prepare();

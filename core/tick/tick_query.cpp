@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/tick/hand_model.h"
-#include "core/tick/hand_state.h"
 #include "core/tick/obstacle_query.h"
 #include "core/tick/penalty.h"
 #include "core/tick/proxy.h"
+#include "core/tick/tick_model.h"
+#include "core/tick/tick_state.h"
 
 namespace passung::tick {
 
@@ -21,12 +21,12 @@ TickQuery::TickQuery(const scene::Scene& scene, double area_stiffness) : models_
 TickQuery::~TickQuery() = default;
 
 QueryReading TickQuery::at(const Pose& X_WS) noexcept {
-    const HandModel& model = models_[0];
-    HandState& state = states_[0];
+    const HandModel& model = models_[0].hands.front();
+    HandState& state = states_[0].hands.front();
     TickFrame frame;
     frame.X_WH = X_WS;
     if (!model.contact.rendersAtHand()) {
-        surveyContacts({model, state, state, frame}, X_WS);
+        surveyContacts({model, state, state, frame, state}, X_WS);
         return {std::max(0.0, -state.clearance), penaltyWrench(weighted_, state.manifold, X_WS.p)};
     }
     runStage<kContactsAtHand>(model, state, frame);
@@ -36,12 +36,12 @@ QueryReading TickQuery::at(const Pose& X_WS) noexcept {
 }
 
 double TickQuery::distanceAt(const Pose& X_WS) noexcept {
-    const HandModel& model = models_[0];
-    HandState& state = states_[0];
+    const HandModel& model = models_[0].hands.front();
+    HandState& state = states_[0].hands.front();
     contact::QueryRequest request = penaltyRequest(model.contact.variant);
     request.search_below = std::numeric_limits<double>::infinity();
     state.scratch.clear();
-    return queryObstacles(model, X_WS, request, state.workspace, state.scratch).phi;
+    return queryObstacles(model, state, X_WS, request, state.workspace, state.scratch).phi;
 }
 
 }  // namespace passung::tick

@@ -32,7 +32,7 @@ public:
 
 private:
     SceneModels models_;             // of the one scene
-    std::vector<HandState> states_;  // its one
+    std::vector<TickState> states_;  // its one
     scene::ContactSpec weighted_;
 };
 

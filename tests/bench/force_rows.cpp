@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "core/base/random.h"
-#include "core/tick/hand_state.h"
 #include "core/tick/obstacle_query.h"
 #include "core/tick/proxy.h"
 #include "core/tick/step.h"
+#include "core/tick/tick_state.h"
 #include "study/person/simulated_person.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/disk_store.h"
@@ -33,21 +33,22 @@ QueryClock query_clock;
 
 // The linker sends the tick's calls of tick::queryObstacles to `timed` (CMakeLists.txt): the tick has no clock.
 namespace passung::tick {
-contact::QueryAnswer real(const HandModel& model, const Pose& X_WS, contact::QueryRequest request,
-                          contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
-                          std::span<ObstaclePush> pushes, std::span<PairCertificates> known) noexcept
-    asm("__real_" PASSUNG_QUERY_SYMBOL);
-contact::QueryAnswer timed(const HandModel& model, const Pose& X_WS, contact::QueryRequest request,
-                           contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
-                           std::span<ObstaclePush> pushes, std::span<PairCertificates> known) noexcept
-    asm("__wrap_" PASSUNG_QUERY_SYMBOL);
+contact::QueryAnswer real(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WS,
+                          contact::QueryRequest request, contact::QueryWorkspace& workspace,
+                          contact::ContactManifold& manifold, std::span<ObstaclePush> pushes,
+                          std::span<PairCertificates> known) noexcept asm("__real_" PASSUNG_QUERY_SYMBOL);
+contact::QueryAnswer timed(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WS,
+                           contact::QueryRequest request, contact::QueryWorkspace& workspace,
+                           contact::ContactManifold& manifold, std::span<ObstaclePush> pushes,
+                           std::span<PairCertificates> known) noexcept asm("__wrap_" PASSUNG_QUERY_SYMBOL);
 
-contact::QueryAnswer timed(const HandModel& model, const Pose& X_WS, contact::QueryRequest request,
-                           contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
-                           std::span<ObstaclePush> pushes, std::span<PairCertificates> known) noexcept {
-    if (!query_clock.running) return real(model, X_WS, request, workspace, manifold, pushes, known);
+contact::QueryAnswer timed(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WS,
+                           contact::QueryRequest request, contact::QueryWorkspace& workspace,
+                           contact::ContactManifold& manifold, std::span<ObstaclePush> pushes,
+                           std::span<PairCertificates> known) noexcept {
+    if (!query_clock.running) return real(model, obstacles, X_WS, request, workspace, manifold, pushes, known);
     const bench::Stopwatch watch;
-    const contact::QueryAnswer answer = real(model, X_WS, request, workspace, manifold, pushes, known);
+    const contact::QueryAnswer answer = real(model, obstacles, X_WS, request, workspace, manifold, pushes, known);
     query_clock.seconds += watch.seconds();
     ++query_clock.queries;
     return answer;
@@ -105,7 +106,7 @@ public:
         std::vector<double> best(records_.size(), kNotGiven);
         const double clock = clockCost();
         for (int repetition = 0; repetition < repetitions; ++repetition) {
-            tick::HandState state = tick::makeState(model_);
+            tick::TickState state = tick::makeState(model_);
             for (std::size_t i = 0; i < records_.size(); ++i) {
                 query_clock = {.running = without_queries};
                 const Stopwatch watch;
@@ -128,19 +129,22 @@ public:
     std::vector<double> motionTimes(int repetitions, double& contacts) {
         std::vector<double> times;
         double sum = 0.0;
-        tick::HandState state = tick::makeState(model_), wide = tick::makeState(model_);
+        tick::TickState state = tick::makeState(model_);
+        const tick::HandModel& hand = model_.hands.front();
+        tick::HandState& own = state.hands.front();
+        tick::HandState wide = tick::makeHandState(hand);
         contact::ContactManifold nearest(kMostContacts);
         motion::Motion wanted_before = motion::Motion::Zero();
         const double clock = clockCost();
         for (const TickRecord& record : records_) {
             const auto out = tick::step(model_, state, tick::readingOf(record));
-            const motion::Motion wanted = tick::unconstrainedMotion(model_, state.X_WG, out.frame.X_WH);
+            const motion::Motion wanted = tick::unconstrainedMotion(hand, own.X_WG, out.frame.X_WH);
             const motion::Motion before = std::exchange(wanted_before, wanted);
             if (out.frame.contacts == 0) continue;
             tick::TickFrame frame;
-            tick::surveyContacts({model_, wide, wide, frame}, state.X_WG);
+            tick::surveyContacts({hand, wide, wide, frame, wide}, own.X_WG);
             takeNearest(wide.manifold, nearest);
-            const motion::Surroundings around{nearest, state.X_WG.p, model_.metric_radius, -model_.margins.keep};
+            const motion::Surroundings around{nearest, own.X_WG.p, hand.metric_radius, -hand.margins.keep};
             const motion::ConstrainedMotion last = motion::constrainMotion(before, around);
             std::vector<std::uint32_t> held;
             held.reserve(static_cast<std::size_t>(last.active));
@@ -171,7 +175,7 @@ private:
         for (std::size_t i = 0; i < count; ++i) nearest.tryPush(points[i]);
     }
 
-    tick::HandModel model_;
+    tick::TickModel model_;
     const std::vector<TickRecord>& records_;
     int queries_ = 0;
 };

@@ -12,8 +12,8 @@
 #include "core/base/random.h"
 #include "core/motion/friction.h"
 #include "core/scene/scene.h"
-#include "core/tick/hand_state.h"
 #include "core/tick/step.h"
+#include "core/tick/tick_state.h"
 
 namespace passung {
 namespace {
@@ -335,8 +335,8 @@ void runScenes(Random& random) {
         if (run == 10) spec.display_wrench = false;
         const auto scene = scene::buildScene(spec, cache);
         if (!scene) std::abort();
-        const tick::HandModel model = tick::makeModel(*scene);
-        tick::HandState state = tick::makeState(model);
+        const tick::TickModel model = tick::makeModel(*scene);
+        tick::TickState state = tick::makeState(model);
         Hand hand(random, spec.parts[0].X_WP);
         const Vec3 start = spec.parts[0].X_WP.p, way = anyVector(random, 0.003);
         for (int i = 0; i < 400; ++i) {

@@ -165,7 +165,7 @@ void FoundOnlooker::lookAtLag(const tick::HandModel& model, const tick::TickOutp
     if (!full_ && lags_ >= kMostLags) return;
     ++lags_;
     if (!unlimited_)
-        unlimited_.emplace(*model.held_surface, *model.obstacle_surface,
+        unlimited_.emplace(*model.held_surface, *model.still_surface,
                            surface::SurfaceSettings{.metric_radius = model.metric_radius,
                                                     .gap = tick::kSurfaceGap,
                                                     .budget = std::numeric_limits<int>::max() / 2});

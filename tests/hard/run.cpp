@@ -28,8 +28,8 @@ Result<Run> runScene(const scene::SceneSpec& spec, const Drive& drive, std::int6
     static scene::PartCache cache;  // methods and seeds of a case share their parts
     const auto scene = scene::buildScene(spec, cache);
     if (!scene) return scene.errors();
-    const tick::HandModel model = tick::makeModel(*scene);
-    tick::HandState state = tick::makeState(model);
+    const tick::TickModel model = tick::makeModel(*scene);
+    tick::TickState state = tick::makeState(model);
     Run run;
     run.spec = run.solids = spec;
     for (const auto& part : scene->parts)
@@ -37,8 +37,8 @@ Result<Run> runScene(const scene::SceneSpec& spec, const Drive& drive, std::int6
             run.most_points += part->shell->points().size() + 2 * part->shell->nodes().size();
             run.all_nodes += part->shell->nodes().size();
         }
-    run.most_points *= model.obstacles.size();
-    run.all_nodes *= model.obstacles.size();
+    run.most_points *= model.hands.front().obstacles.size();
+    run.all_nodes *= model.hands.front().obstacles.size();
     run.readings.reserve(static_cast<std::size_t>(ticks));
     run.ticks.reserve(static_cast<std::size_t>(ticks));
     tick::TickOutput output;
@@ -47,7 +47,7 @@ Result<Run> runScene(const scene::SceneSpec& spec, const Drive& drive, std::int6
         const bench::Stopwatch watch;
         output = tick::step(model, state, run.readings.back());
         const double us = 1e6 * watch.seconds();
-        if (look) look(model, state, output);
+        if (look) look(model.hands.front(), state.hands.front(), output);
         const tick::TickFrame& f = output.frame;
         run.ticks.push_back({.device = f.X_WH,
                              .proxy = output.X_WG,

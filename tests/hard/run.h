@@ -7,8 +7,8 @@
 
 #include "core/base/result.h"
 #include "core/scene/scene.h"
-#include "core/tick/hand_state.h"
 #include "core/tick/step.h"
+#include "core/tick/tick_state.h"
 
 namespace passung::hard {
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/scene/scene.h"
-#include "core/tick/hand_state.h"
 #include "core/tick/step.h"
+#include "core/tick/tick_state.h"
 
 namespace passung::test {
 
@@ -18,8 +18,11 @@ public:
     tick::TickOutput step(const DeviceReading& reading) { return tick::step(model_, state_, reading); }
 
     const scene::Scene& scene() const { return scene_; }
-    const tick::HandModel& model() const { return model_; }
-    tick::HandState& state() { return state_; }
+    /// Of the first hand.
+    const tick::HandModel& model() const { return model_.hands.front(); }
+    tick::HandState& state() { return state_.hands.front(); }
+    const tick::TickModel& whole() const { return model_; }
+    tick::TickState& wholeState() { return state_; }
 
 private:
     static scene::Scene build(const scene::SceneSpec& spec) {
@@ -29,8 +32,8 @@ private:
         return std::move(*scene);
     }
     scene::Scene scene_;
-    tick::HandModel model_;
-    tick::HandState state_;
+    tick::TickModel model_;
+    tick::TickState state_;
 };
 
 /// A held part over one fixed part, no limits that act and no start gate.

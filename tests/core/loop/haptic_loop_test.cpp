@@ -52,7 +52,7 @@ TEST(HapticCycle, RecordsEveryTickAndShowsSixtyImagesASecond) {
     test::Bench bench = ballInTable();
     StillDevice device(kPressed);
     loop::RecordRing ring(2048);
-    loop::HapticCycle cycle(bench.model(), device, ring, true);
+    loop::HapticCycle cycle(bench.whole(), device, ring, true);
     for (int i = 0; i < 1000; ++i) cycle.run(i == 500 ? 3 : 0);
     std::vector<TickRecord> records(2048);
     records.resize(ring.take(records));
@@ -76,7 +76,7 @@ TEST(HapticCycle, RecordsWhatATickTookOfTheProcessorBesideTheWallClock) {
     test::Bench bench = ballInTable();
     StillDevice device(kPressed);
     loop::RecordRing ring(2048);
-    loop::HapticCycle cycle(bench.model(), device, ring, true);
+    loop::HapticCycle cycle(bench.whole(), device, ring, true);
     const std::int64_t begin = threadProcessorNanoseconds();
     for (int i = 0; i < 1000; ++i) cycle.run();
     const std::int64_t all = threadProcessorNanoseconds() - begin;
@@ -103,7 +103,7 @@ TEST(HapticCycle, EveryScreenGetsEveryTickWithTheTimeAtWhichItBegan) {
     loop::RecordRing ring(256);
     loop::ScreenRing screen(256), forgotten(16);
     const std::array screens{&forgotten, &screen};
-    loop::HapticCycle cycle(bench.model(), device, ring, true, screens);
+    loop::HapticCycle cycle(bench.whole(), device, ring, true, screens);
     const auto steady = [] { return std::chrono::steady_clock::now().time_since_epoch().count(); };
     std::int64_t before = steady();
     for (int i = 0; i < 200; ++i) cycle.run();
@@ -128,7 +128,7 @@ TEST(HapticCycle, AllocatesLocksAndWritesNothing) {
     loop::RecordRing ring(1024);  // fills up: dropping must be as quiet
     loop::ScreenRing screen(64);
     const std::array screens{&screen};
-    loop::HapticCycle cycle(bench.model(), device, ring, true, screens);
+    loop::HapticCycle cycle(bench.whole(), device, ring, true, screens);
     support::RtGuard guard;
     for (int i = 0; i < 10000; ++i) cycle.run();
     EXPECT_EQ(guard.violations(), 0) << guard.describe();
@@ -140,7 +140,7 @@ TEST(RealTimeThread, RunsCyclesAndStopsWithAZeroWrench) {
     test::Bench bench = ballInTable();
     StillDevice device(kPressed);
     loop::RecordRing ring(4096);
-    loop::HapticCycle cycle(bench.model(), device, ring, true);
+    loop::HapticCycle cycle(bench.whole(), device, ring, true);
     std::int64_t seen = 0;
     {
         loop::RealTimeThread thread(cycle);
@@ -199,7 +199,7 @@ TEST(RealTimeThread, RecordsEveryCycleThatASlowDeviceMadeItMiss) {
     test::Bench bench = ballInTable();
     SlowDevice device;
     loop::RecordRing ring(4096);
-    loop::HapticCycle cycle(bench.model(), device, ring, true);
+    loop::HapticCycle cycle(bench.whole(), device, ring, true);
     loop::RealTimeThread thread(cycle);
     std::vector<TickRecord> records, some(256);
     const auto takeAll = [&] {

@@ -85,7 +85,7 @@ DeviceReading readingAt(int tick, Random& random) {
 
 std::uint64_t hashOf(const scene::SceneSpec& spec) {
     const test::Bench bench(spec);
-    const tick::SceneTurn turn{&bench.model()};
+    const tick::SceneTurn turn{&bench.whole()};
     tick::SceneSequence scenes(std::span(&turn, 1));
     Random random(11);
     for (int i = 0; i < 700; ++i) scenes.step(readingAt(i, random));

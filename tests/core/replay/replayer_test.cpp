@@ -58,7 +58,7 @@ scene::SceneSpec withEveryEffect(scene::SceneSpec spec) {
 std::vector<TickRecord> record(const test::Bench& bench, std::uint64_t& hash) {
     Wobble device;
     loop::RecordRing ring(4096);
-    loop::HapticCycle cycle(bench.model(), device, ring, true);
+    loop::HapticCycle cycle(bench.whole(), device, ring, true);
     for (int i = 0; i < 2000; ++i) cycle.run(i == 1000);  // one cycle came late
     hash = cycle.stateHash();
     std::vector<TickRecord> records(4096);

@@ -139,7 +139,7 @@ TEST(OutputStage, RampsInFromZeroWhereContactIsThereAtTheStart) {
     };
     test::Bench bench(spec);
     ramp(bench);
-    bench.state() = tick::makeState(bench.model());
+    bench.state() = tick::makeHandState(bench.model());
     ramp(bench);
     DeviceReading lost{at(0.00575)};
     lost.fresh = false;
@@ -431,10 +431,11 @@ TEST(OutputStage, KeepsItsContractUnderHostileInput) {
         spec.limits.max_force_rate = 190;
         spec.registration.X_DH = {Quat::Identity(), Vec3(0.03, 0, 0)};
         test::Bench bench(spec);
-        tick::HandModel model = bench.model();
-        model.stages.insert(model.stages.end() - 1, {"probe", "planted", true,
-                                                     [](const tick::HandModel&, tick::HandState&,
-                                                        tick::TickFrame& f) noexcept { g_asked = f; }});
+        tick::TickModel model = tick::makeModel(bench.scene());
+        auto& stages = model.hands.front().stages;
+        stages.insert(stages.end() - 1,
+                      {"probe", "planted", true,
+                       [](const tick::HandModel&, tick::HandState&, tick::TickFrame& f) noexcept { g_asked = f; }});
         Watch watch(spec.limits);
         Random random(9);
         std::uint64_t bad_left = 0;
@@ -463,7 +464,7 @@ TEST(OutputStage, KeepsItsContractUnderHostileInput) {
                         reading.fresh = false;
                 }
             }
-            const auto out = tick::step(model, bench.state(), reading);
+            const auto out = tick::step(model, bench.wholeState(), reading);
             ASSERT_TRUE(isFinite(out.X_WG) && isFinite(out.frame.X_WH));
             ASSERT_FALSE(out.frame.status & kNonFiniteLatched);
             const Vec3 lever = g_asked.X_WH.q * Vec3(0.03, 0, 0);
@@ -577,19 +578,19 @@ TEST(OutputStage, LatchesZeroAfterANonFiniteWrenchUntilTheStateIsMadeAnew) {
     // Truth: invariant. A stage that computes NaN is planted for one tick.
     test::Bench bench(pressing());
     pressed(bench, 0.004);
-    tick::HandModel broken = bench.model();
-    broken.stages.insert(
-        broken.stages.end() - 1,
-        {"broken", "planted", true, [](const tick::HandModel&, tick::HandState&, tick::TickFrame& f) noexcept {
-             f.F_H_W.force.x() = std::numeric_limits<double>::quiet_NaN();
-         }});
-    const auto bad = tick::step(broken, bench.state(), DeviceReading{at(0.006)});
+    tick::TickModel broken = tick::makeModel(bench.scene());
+    auto& stages = broken.hands.front().stages;
+    stages.insert(stages.end() - 1, {"broken", "planted", true,
+                                     [](const tick::HandModel&, tick::HandState&, tick::TickFrame& f) noexcept {
+                                         f.F_H_W.force.x() = std::numeric_limits<double>::quiet_NaN();
+                                     }});
+    const auto bad = tick::step(broken, bench.wholeState(), DeviceReading{at(0.006)});
     EXPECT_EQ(bad.F_D_B.force.norm(), 0.0);
     EXPECT_TRUE(bad.frame.status & kNonFiniteLatched);
     const auto still = bench.step(at(0.006));
     EXPECT_EQ(still.F_D_B.force.norm(), 0.0);
     EXPECT_TRUE(still.frame.status & kNonFiniteLatched);
-    bench.state() = tick::makeState(bench.model());
+    bench.state() = tick::makeHandState(bench.model());
     EXPECT_GT(pressed(bench, 0.004).F_D_B.force.norm(), 3.0);
 }
 

@@ -112,7 +112,7 @@ TEST(Proxy, CutsNoCornerBetweenTwoTicks) {
     double deepest = 0.0;
     int round = 0;
     for (int run = 0; run < 500; ++run) {
-        bench.state() = makeState(bench.model());
+        bench.state() = makeHandState(bench.model());
         const double from = random.uniform(-0.3e-3, -20e-6);
         const Vec3 to(random.uniform(0.0, 0.6e-3), 0.0, random.uniform(-1.5e-3, -0.1e-3));
         Vec3 before = edgeOf(spec.parts[0].X_WP);

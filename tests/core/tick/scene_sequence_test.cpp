@@ -30,7 +30,7 @@ TEST(SceneSequence, RendersEachSceneForItsPeriodsAndClosesTheGateBetween) {
     // Truth: closed form. The gate opens at the sixth tick of a turn (more than 5 held); 10 periods later the next
     // scene takes over; a missed cycle counts. The same depth at twice the stiffness is twice the force.
     const test::Bench soft(pressed(500.0)), hard(pressed(1000.0));
-    tick::SceneSequence scenes(std::array{tick::SceneTurn{&soft.model(), 10}, tick::SceneTurn{&hard.model()}});
+    tick::SceneSequence scenes(std::array{tick::SceneTurn{&soft.whole(), 10}, tick::SceneTurn{&hard.whole()}});
     std::vector<double> force;
     std::vector<bool> engaged;
     for (int k = 0; k < 40; ++k) {
@@ -53,7 +53,7 @@ TEST(SceneSequence, RendersEachSceneForItsPeriodsAndClosesTheGateBetween) {
 TEST(SceneSequence, TheLastSceneStays) {
     // Truth: invariant
     const test::Bench soft(pressed(500.0));
-    tick::SceneSequence scenes(std::array{tick::SceneTurn{&soft.model(), 10}});
+    tick::SceneSequence scenes(std::array{tick::SceneTurn{&soft.whole(), 10}});
     for (int k = 0; k < 100; ++k) scenes.step({kPressed});
     EXPECT_NE(scenes.step({kPressed}).frame.status & kEngaged, 0u);
 }
@@ -61,17 +61,17 @@ TEST(SceneSequence, TheLastSceneStays) {
 TEST(SceneSequence, OneSceneIsTheTickItself) {
     // Truth: invariant: the bits of step() and of its hash
     test::Bench bench(pressed(500.0));
-    tick::SceneSequence scenes(std::array{tick::SceneTurn{&bench.model()}});
+    tick::SceneSequence scenes(std::array{tick::SceneTurn{&bench.whole()}});
     for (int k = 0; k < 50; ++k) EXPECT_EQ(scenes.step({kPressed}).F_D_B.force, bench.step(kPressed).F_D_B.force);
-    EXPECT_EQ(scenes.hash(), bench.state().hash);
-    EXPECT_EQ(scenes.tick(), bench.state().tick);
+    EXPECT_EQ(scenes.hash(), bench.wholeState().hash);
+    EXPECT_EQ(scenes.tick(), bench.wholeState().tick);
 }
 
 TEST(SceneModels, StayWhereTheyAreAndAreThoseOfTheirScenes) {
     // Truth: invariant: the bits of a tick do not depend on who keeps its model, nor on the whole being moved.
     test::Bench soft(pressed(500.0)), hard(pressed(1000.0));
     tick::SceneModels built(std::array{soft.scene(), hard.scene()});
-    const tick::HandModel* second = &built[1];
+    const tick::TickModel* second = &built[1];
     const tick::SceneModels models = std::move(built);
     ASSERT_EQ(models.size(), 2u);
     EXPECT_EQ(second, &models[1]);
@@ -86,7 +86,7 @@ TEST(SceneSequence, TheHashTellsOfWhatCameBeforeAChangeOfScenes) {
     // Truth: invariant: two runs that differ in one tick of the first scene only end with different hashes.
     const test::Bench soft(pressed(500.0)), hard(pressed(1000.0));
     const auto hashAfter = [&](double x) {
-        tick::SceneSequence scenes(std::array{tick::SceneTurn{&soft.model(), 10}, tick::SceneTurn{&hard.model()}});
+        tick::SceneSequence scenes(std::array{tick::SceneTurn{&soft.whole(), 10}, tick::SceneTurn{&hard.whole()}});
         for (int k = 0; k < 40; ++k) scenes.step({k == 7 ? Pose{kPressed.q, kPressed.p + Vec3(x, 0, 0)} : kPressed});
         return scenes.hash();
     };
@@ -98,7 +98,7 @@ TEST(SceneSequence, AllocatesNothingWhenScenesChange) {
     // Truth: invariant, counted by interposed functions
     if (!support::RtGuard::available()) GTEST_SKIP() << "the sanitizer owns the interposed functions";
     const test::Bench soft(pressed(500.0)), hard(pressed(1000.0));
-    tick::SceneSequence scenes(std::array{tick::SceneTurn{&soft.model(), 10}, tick::SceneTurn{&hard.model()}});
+    tick::SceneSequence scenes(std::array{tick::SceneTurn{&soft.whole(), 10}, tick::SceneTurn{&hard.whole()}});
     support::RtGuard guard;
     for (int k = 0; k < 100; ++k) scenes.step({kPressed});
     EXPECT_EQ(guard.violations(), 0) << guard.describe();
@@ -108,7 +108,7 @@ TEST(SceneSequence, AReplayFindsTheChangeOfScenesAgain) {
     // Truth: invariant: recorded inputs give the recorded outputs and the same hash; with a change one tick later not
     const test::Bench soft(pressed(500.0)), hard(pressed(1000.0));
     const auto turns = [&](std::int64_t periods) {
-        return std::array{tick::SceneTurn{&soft.model(), periods}, tick::SceneTurn{&hard.model()}};
+        return std::array{tick::SceneTurn{&soft.whole(), periods}, tick::SceneTurn{&hard.whole()}};
     };
     tick::SceneSequence scenes(turns(10));
     std::vector<TickRecord> records;

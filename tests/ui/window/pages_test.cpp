@@ -6,7 +6,7 @@
 
 #include "analysis/export/export.h"
 #include "core/scene/scene.h"
-#include "core/tick/hand_model.h"
+#include "core/tick/tick_model.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
 #include "study/store/read/store_reader.h"
@@ -439,7 +439,8 @@ std::vector<StageText> stageTexts() {
             spec.display_wrench = false;
             const auto scene = scene::buildScene(spec, cache);
             if (!scene) throw std::runtime_error(toString(scene.errors().front()));
-            for (const auto& stage : tick::makeModel(*scene).stages) all.push_back({stage.name, stage.reason});
+            for (const auto& stage : tick::makeModel(*scene).hands.front().stages)
+                all.push_back({stage.name, stage.reason});
         }
     }
     return all;

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/types.h"
+#include "core/closed_form/solid.h"
+#include "core/geometry/cluster_tree.h"
+#include "core/scene/contact_geometry.h"
+#include "core/scene/scene.h"
+
+namespace passung::tick {
+
+/// A part of the scene, as what contact with it is computed from. Borrows the scene's.
+struct Body {
+    Pose X_WP_start;    // part to world, where a trial begins
+    bool held = false;  // by a hand: it moves
+    // Geometry::Field only, as far as anybody asks for it
+    const field::DistanceField* field = nullptr;
+    const shell::SphereTree* shell = nullptr;
+    const shell::EdgeCurves* edges = nullptr;            // with the shell
+    const geometry::ClusterTree* surface = nullptr;      // Geometry::Surface only
+    std::optional<closed_form::SmoothSolid> solid = {};  // Geometry::ClosedForm only
+};
+
+/// The parts of a scene and what they share, for all hands. Does not change while a trial runs. Borrows the scene's
+/// parts.
+struct World {
+    scene::Geometry geometry = scene::Geometry::Field;
+    std::vector<Body> bodies;  // in the order of the scene
+    // Geometry::Surface only: all that nobody holds, in the world, as one or none; and of each its first triangle there
+    std::vector<geometry::ClusterTree> still_surface;
+    std::vector<std::uint32_t> first_triangles;
+};
+
+/// @pre `scene` outlives the result
+World makeWorld(const scene::Scene& scene);
+
+}  // namespace passung::tick
