@@ -139,6 +139,29 @@ Contact contactOf(const SolidPair& pair, const LineView& view, const TouchName& 
     return contact;
 }
 
+constexpr double kTied = 1e-7;     // [m], above what a look leaves of overlap
+constexpr double kTiedGap = 1e-6;  // [m]
+
+/// Of a contact whose line could not touch with its normal: those of other faces that are as high there. Where faces of
+/// both parts lie in one plane, as sides of equal boxes do that meet face to face, rounding says which of the planes a
+/// corner is the farthest from; along the others nothing holds, and the one that does must not be missed.
+void addTied(const SolidPair& pair, const LineView& view, const Contact& contact, double most_lean,
+             PairContacts& contacts) noexcept {
+    if (contact.name.core) return;
+    const std::vector<Face>& faces = lumpOf(pair, contact.name).faces;
+    const Vec3 p = pointOf(view.line, contact.touch.on(view.line));
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        if (i == contact.touch.a || valueOf(faces[i], p) - view.line.thickness < contact.gap - kTied) continue;
+        Touch touch = contact.touch;
+        touch.kind = Touch::Kind::Fixed;
+        touch.a = static_cast<std::uint8_t>(i);
+        touch.b = Touch::kNone;
+        touch.share = 1.0;
+        const Contact tied = contactOf(pair, view, contact.name, touch, most_lean);
+        if (!(tied.lean > most_lean)) contacts.add(tied);
+    }
+}
+
 /// Derivatives of one face's function on the line by the motion u and by t, in S.
 struct OnLine {
     motion::Motion by_u = motion::Motion::Zero();
@@ -278,7 +301,10 @@ double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contact
             look(placed, reach, false, meeting, [&](const LineView& view, const Touch& touch) {
                 const Contact contact = contactOf(pair_, view, meeting.name, touch, most_lean);
                 overlap_ = std::max(overlap_, -contact.gap);
-                if (!(contact.lean > most_lean)) contacts.add(contact);
+                if (!(contact.lean > most_lean))
+                    contacts.add(contact);
+                else if (contact.gap < kTiedGap)
+                    addTied(pair_, view, contact, most_lean, contacts);
             });
             if (touches_.full()) contacts.setFull();
         }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/random.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/scenes.h"
 
@@ -49,6 +50,33 @@ TEST(ClosedFormProxy, RestsOnAPlaneAndPushesWithTheSpring) {
         EXPECT_GT(out.frame.contacts, 0u);
         EXPECT_EQ(out.frame.status & ~kEngaged, 0u);
     }
+}
+
+TEST(ClosedFormProxy, HoldsWhereSidesLieInOnePlaneToRounding) {
+    // Truth: closed form: the upper face stays on the lower one, the hand 3 mm below it. Both parts have the same
+    // sides, and the hand turns and shifts by so little that rounding says which of them is outside.
+    struct Pair {
+        shape::Shape held, fixed;
+        double z_held, z_fixed;  // faces 0.2 mm apart at z = 0
+    };
+    const std::vector<Pair> pairs{
+        {shape::Box{0.02, 0.02, 0.02}, shape::Box{0.02, 0.02, 0.02}, 0.0102, -0.01},
+        {shape::Box{0.02, 0.02, 0.02}, shape::Box{0.02, 0.06, 0.02}, 0.0102, -0.01},
+        {shape::Cylinder{0.02, 0.02}, shape::Cylinder{0.02, 0.02}, 0.0102, -0.01},
+        {shape::SquarePeg{0.02, 0.02, 0.03, 0.0}, shape::Box{0.02, 0.02, 0.02}, 0.0002, -0.01},
+    };
+    Random random(5);
+    for (const Pair& pair : pairs)
+        for (const double jitter : {0.0, 1e-17, 1e-16, 1e-14, 1e-10}) {
+            test::Bench bench(closedFormScene(pair.held, at(0, 0, pair.z_held), pair.fixed, at(0, 0, pair.z_fixed)));
+            const auto any = [&] { return random.uniform(-jitter, jitter); };
+            for (int i = 1; i <= 200; ++i) {
+                const double z = pair.z_held - 0.0032 * std::min(1.0, i / 100.0);
+                const auto out =
+                    bench.step(Pose{rotationFromVector(100.0 * Vec3(any(), any(), any())), Vec3(any(), any(), z)});
+                ASSERT_GT(out.X_WG.p.z(), pair.z_held - 0.0002 - kOverlap) << jitter << " m, tick " << i;
+            }
+        }
 }
 
 TEST(ClosedFormProxy, BuildsNeitherFieldNorPoints) {
