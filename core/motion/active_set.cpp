@@ -12,7 +12,8 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 }  // namespace
 
 /// What of `a` lies in the span, as r = N⁺ a, and what does not, as z = a - N r; by Gram-Schmidt twice.
-void ActiveSet::split(const Motion& a, Motion& z, Motion& r) const noexcept {
+template <int N>
+void ActiveSetOf<N>::split(const Motion& a, Motion& z, Motion& r) const noexcept {
     Motion q = Motion::Zero();
     z = a;
     for (int pass = 0; pass < 2; ++pass) {
@@ -30,8 +31,9 @@ void ActiveSet::split(const Motion& a, Motion& z, Motion& r) const noexcept {
     }
 }
 
-bool ActiveSet::tryAdd(const MotionRow& row, double lambda) noexcept {
-    if (count_ == 6) return false;
+template <int N>
+bool ActiveSetOf<N>::tryAdd(const MotionRow& row, double lambda) noexcept {
+    if (count_ == N) return false;
     Motion rest = row.a;
     R_.col(count_).setZero();
     for (int pass = 0; pass < 2; ++pass) {
@@ -51,7 +53,8 @@ bool ActiveSet::tryAdd(const MotionRow& row, double lambda) noexcept {
 }
 
 /// Rows before `which` stay as they are, those behind it move up.
-void ActiveSet::drop(int which) noexcept {
+template <int N>
+void ActiveSetOf<N>::drop(int which) noexcept {
     const int end = count_;
     count_ = which;
     for (int i = which + 1; i < end; ++i) {
@@ -61,7 +64,8 @@ void ActiveSet::drop(int which) noexcept {
 }
 
 /// λ = (NᵀN)⁻¹ rhs = R⁻¹ R⁻ᵀ rhs.
-Motion ActiveSet::multipliersFor(const Motion& rhs) const noexcept {
+template <int N>
+MotionOf<N> ActiveSetOf<N>::multipliersFor(const Motion& rhs) const noexcept {
     Motion y = Motion::Zero();
     for (int i = 0; i < count_; ++i) {
         double sum = rhs[i];
@@ -76,7 +80,8 @@ Motion ActiveSet::multipliersFor(const Motion& rhs) const noexcept {
     return y;
 }
 
-Motion ActiveSet::start(const Motion& wanted) noexcept {
+template <int N>
+MotionOf<N> ActiveSetOf<N>::start(const Motion& wanted) noexcept {
     while (count_ > 0) {
         Motion missing = Motion::Zero();
         for (int i = 0; i < count_; ++i) missing[i] = row(i).bound - row(i).a.dot(wanted);
@@ -98,13 +103,15 @@ Motion ActiveSet::start(const Motion& wanted) noexcept {
     return wanted;
 }
 
-ActiveSet::Taken ActiveSet::takeUp(const MotionRow& row, Motion& u, int& iterations, int most) noexcept {
+template <int N>
+typename ActiveSetOf<N>::Taken ActiveSetOf<N>::takeUp(const MotionRow& row, Motion& u, int& iterations,
+                                                      int most) noexcept {
     double lambda = 0.0;
     while (++iterations <= most) {
         Motion z, r;
         split(row.a, z, r);
         const double z2 = z.squaredNorm();
-        const double full = count_ < 6 && z2 > kIndependent * kIndependent ? (row.bound - row.a.dot(u)) / z2 : kNever;
+        const double full = count_ < N && z2 > kIndependent * kIndependent ? (row.bound - row.a.dot(u)) / z2 : kNever;
         double partial = kNever;
         int let_go = -1;
         for (int i = 0; i < count_; ++i) {
@@ -128,5 +135,8 @@ ActiveSet::Taken ActiveSet::takeUp(const MotionRow& row, Motion& u, int& iterati
     }
     return Taken::Capped;
 }
+
+template class ActiveSetOf<6>;
+template class ActiveSetOf<kMostUnknowns>;
 
 }  // namespace passung::motion
