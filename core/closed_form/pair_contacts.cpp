@@ -290,6 +290,16 @@ void ContactSearch::moveTo(const Pose& X_WH) noexcept {
     sampled_ = nullptr;
 }
 
+bool ContactSearch::place(const Pose& X_WO) noexcept {
+    if (X_WO.p == pair_.X_WO.p && X_WO.q.coeffs() == pair_.X_WO.q.coeffs()) return false;
+    const Pose back = pair_.X_WO * X_WO.inverse();
+    way_ += (back * X_last_.p - X_last_.p).norm();
+    turn_ += rotationVector(back.q).norm();
+    pair_.X_WO = X_WO;
+    sampled_ = nullptr;
+    return true;
+}
+
 double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contacts, double most_lean) noexcept {
     moveTo(X_WH);
     contacts.clear();

@@ -58,6 +58,9 @@ public:
     explicit ContactSearch(const SolidPair& pair);
 
     const SolidPair& pair() const noexcept { return pair_; }
+    /// The obstacle is elsewhere from now on. What is known of lines and lumps is kept: seen from the obstacle the held
+    /// part has moved by the inverse. True if it is elsewhere. rt-safe.
+    bool place(const Pose& X_WO) noexcept;
     /// Pieces of lines times lumps of the other part that a look may have to look at, threads' apart.
     std::size_t meetings() const noexcept;
 

@@ -83,10 +83,19 @@ public:
     /// In at most `most` looks, and no more than kMostMeetings lets it have. rt-safe.
     ConstrainedPose solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most = kMostLooks) noexcept;
 
+    /// Obstacle `i` is at `X_WO` from now on. rt-safe.
+    void place(std::size_t i, const Pose& X_WO) noexcept {
+        if (searches_[i].place(X_WO)) X_found_.reset();
+    }
+
     /// Poses without overlap that the last solve went through, from its start on: the proxy's way.
     std::span<const Pose> way() const noexcept { return way_.all(); }
 
     const SolidPair& pair(std::size_t i) const noexcept { return searches_[i].pair(); }
+
+    /// The contacts that the last look found: where the last solve ended, if it converged.
+    std::size_t foundCount() const noexcept { return found_; }
+    const HeldContact& found(std::size_t i) const noexcept { return rows_[i].from; }
 
 private:
     static constexpr std::size_t kMostRows = 1024;
