@@ -99,6 +99,12 @@ std::vector<Error> SceneSpec::validate() const {
     check.notNegative("contact: cell", contact.cell);
     check.positive("contact: spacing", contact.spacing);
     check.require(contact.budget_nodes >= 0, "contact: budget_nodes", contact.budget_nodes, "must be ≥ 0");
+    if (handCount() > 1 && std::count_if(parts.begin(), parts.end(),
+                                         [](const PartSpec& part) { return part.held && part.friction > 0.0; }) > 1)
+        check.errors.push_back({.message = "must be 0 on all parts that are held but one: nothing rubs between hands",
+                                .key = "part: friction"});
+    check.require(contact.budget_nodes <= 0 || handCount() == 1, "contact: budget_nodes", contact.budget_nodes,
+                  "must be 0 with more than one hand: a look may not take several ticks where parts move meanwhile");
     check.notNegative("effects: passivity damping", effects.passivity_damping);
     const Transients& transients = effects.transients;
     check.notNegative("effects: transients: amplitude", transients.amplitude);

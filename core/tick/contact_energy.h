@@ -41,6 +41,17 @@ inline constexpr StageOf kContactShares{
      .needs = [](const HandModel& model) { return model.hasObstacles(); },
      .reason = [](const HandModel&) { return "always: the energy account is kept for each obstacle too"; }}};
 
+/// Stage, of hands with a proxy beside other hands: what their parts push the held part with (held_contacts.h).
+void addHeldPushes(const HandModel& model, const Pull& pull, Pushes& pushes) noexcept;
+inline constexpr StageOf kHeldPushes{
+    addHeldPushes,
+    {.name = "pushes between hands",
+     .parameters = "",
+     .cost = "a little for each obstacle",
+     .needs = [](const HandModel& model) { return model.hasProxy() && !model.moving.empty(); },
+     .reason =
+         [](const HandModel&) { return "parts in different hands may touch: what pushes them is accounted for"; }}};
+
 /// Books what was sent since the good sample before over the handle's motion since then. rt-safe.
 void bookPairs(EnergyAccounts& accounts, const Vec3& moved, const Vec3& turned, int ticks) noexcept;
 

@@ -69,7 +69,7 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
             step.u = step.share * allowed.u;
             step.halved = share < 1.0;
             step.rubbing = allowed.rubbing;
-            step.X_WH = moving.hand.X_WH;
+            step.X_WT = moving.X_WT;
             const bool bends = model.hasNodeBudget() && way.bentBy(step.u) > model.margins.relieve;
             if (bends || !budget.allows()) {
                 proxy.tried = tried;
@@ -83,7 +83,7 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
         }
         const motion::Motion u = step.u;
         if (overlap(proxy) <= bounds.accepted) {
-            noteFollowed(proxy, step.X_WH, step.share);
+            noteFollowed(proxy, step.X_WT, step.share);
             return {.u = u, .rubbing = step.rubbing, .made = true, .whole = step.share == 1.0, .halved = step.halved};
         }
         moving.report.status |= kStepRejected;
@@ -102,9 +102,9 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
 
 }  // namespace
 
-void sweepProxy(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles, Proxy& proxy,
-                ProxyMotion& motion, QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
-    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, motion, pushes};
+void sweepProxy(const HandModel& model, const HandSample& hand, const Pull& pull, const ObstaclePoses& obstacles,
+                Proxy& proxy, ProxyMotion& motion, QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
+    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, pull.X_WT, motion, pushes};
     if (!startProxy(moving)) {
         report.status |= kSuspended | kIterationLimit;
         noteLag(moving, false);
@@ -122,7 +122,7 @@ void sweepProxy(const HandModel& model, const HandSample& hand, const ObstaclePo
     bool arrived = false, whole = false;  // whole: the last step was all that was allowed
     bool suspended = false;
     for (int sweep = 0; sweep <= kSweeps; ++sweep) {
-        const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, hand.X_WH);
+        const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, pull.X_WT);
         const double path = longestPath(model, wanted);
         const double before = overlap(proxy);
         const bool goes_on = proxy.step.look.open;  // with what an earlier tick began
@@ -134,7 +134,7 @@ void sweepProxy(const HandModel& model, const HandSample& hand, const ObstaclePo
             if (!way.goesOn(model, wanted, path)) break;
             const bool bent = way.bentBy(wanted) > margins.relieve;
             suspended = !budget.allows(bent ? 1 + kLooksBetween : 1);
-            if (suspended || (bent && cutsCorner(moving, X_before, hand.X_WH, between))) break;
+            if (suspended || (bent && cutsCorner(moving, X_before, pull.X_WT, between))) break;
             report.iterations = static_cast<std::uint32_t>(sweep + 1);
             budget.begin();
             arrived = arriveFreely(moving, path, reach, accepted);

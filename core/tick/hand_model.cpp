@@ -96,7 +96,8 @@ void addFriction(HandModel& model, const scene::Scene& scene) {
 template <const auto&... stage>
 void addStages(HandModel& model, StageList<stage...>) {
     const auto add = [&model](const StageCard& card, auto* run) {
-        if (card.needs(model)) model.stages.push_back({card.name, card.reason(model), card.before_start, run});
+        if (card.needs(model))
+            model.stages.push_back({card.name, card.reason(model), card.senses, card.before_start, run});
     };
     (add(stage.card, runStage<stage>), ...);
 }

@@ -61,8 +61,14 @@ void addQueryMemory(const HandModel& model, Proxy& proxy, QueryMemory& memory) {
 HandState makeHandState(const HandModel& model) {
     HandState state;
     for (const Obstacle& obstacle : model.obstacles) state.X_WO.push_back(model.bodies[obstacle.body].X_WP_start);
+    for (const std::uint32_t i : model.moving) {
+        state.X_WO_known.push_back(state.X_WO[i]);
+        state.X_WO_last.push_back(state.X_WO[i]);
+    }
+    state.X_WT = model.X_WG_start;
+    if (!model.moving.empty()) state.from_hands.resize(model.obstacles.size());
     state.engaged = model.start_gate.hold_ticks <= 0;
-    state.X_WG = state.step.X_WH_followed = model.X_WG_start;
+    state.X_WG = state.step.X_WT_followed = model.X_WG_start;
     state.pairs.resize(model.obstacles.size() + 1);
     state.pushes.resize(state.pairs.size());
     state.last_shares.resize(state.pairs.size());

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "core/tick/closed_form_proxy.h"
+#include "core/tick/common_way.h"
 #include "core/tick/contact_energy.h"
 #include "core/tick/energy_account.h"
 #include "core/tick/god_object.h"
@@ -27,23 +28,24 @@ namespace passung::tick {
 // The wholes, for those who walk the stages. No stage includes this header: from its parts no way leads to others.
 
 /// Every stage that a scene may need, in the order of the tick.
-using AllStages = StageList<kInputGuard, kEnergyAccount, kStartGate,             // where the hand is
-                            kFreeHand,                                           // no contact
-                            kContactsAtHand, kPenaltyWrench,                     // direct penalty
-                            kPenaltyTool, kProxySweep,                           // tool, god object
-                            kProxyCorrection, kProxyMotion,                      // its heuristic
-                            kProxyFilter, kProxyRecord, kHandDepth,              // what follows them
-                            kClosedFormProxy, kClosedFormFilter,                 // god objects on closed forms
-                            kClosedFormRecord, kClosedFormDepth,                 // what follows them
-                            kSurfaceProxy, kSurfaceRecord, kSurfaceDepth,        // the same on surfaces
-                            kVirtualCoupling,                                    // their wrench
+using AllStages = StageList<kInputGuard, kEnergyAccount, kStartGate,                    // where the hand is
+                            kFreeHand,                                                  // no contact
+                            kContactsAtHand, kPenaltyWrench,                            // direct penalty
+                            kPenaltyTool, kProxySweep,                                  // tool, god object
+                            kProxyCorrection, kProxyMotion,                             // its heuristic
+                            kProxyFilter, kCommonWay, kProxyRecord, kHandDepth,         // what follows them
+                            kClosedFormProxy, kClosedFormFilter, kClosedFormCommonWay,  // god objects on closed forms
+                            kClosedFormRecord, kClosedFormDepth,                        // what follows them
+                            kSurfaceProxy, kSurfaceRecord, kSurfaceDepth,               // the same on surfaces
+                            kVirtualCoupling,                                           // their wrench
+                            kHeldPushes,
                             kTransients,                                         // effects
                             kContactShares, kOutputDelay, kPassivityController,  // what goes out
                             kNoWrench, kOutputLimits>;
 
 /// Everything of a hand that a tick carries to the next: the stages' own states. Sized by makeHandState; a tick never
 /// allocates.
-struct HandState : Parts<ObstaclePoses, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion, ProxyFilter,
+struct HandState : Parts<ObstaclePoses, Pull, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion, ProxyFilter,
                          ClosedFormHold, FilteredHold, ClosedFormMemory, SurfaceFollow, HandVelocity, ToolMotion,
                          Stretch, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
 

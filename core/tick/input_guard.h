@@ -50,6 +50,7 @@ inline constexpr StageOf kInputGuard{
     {.name = "input guard",
      .parameters = "device.max_speed_m_per_s, device.registration",
      .cost = "constant",
+     .senses = true,
      .before_start = true,
      .needs = [](const HandModel&) { return true; },
      .reason = [](const HandModel&) { return "always: a device may lie, stall or vanish"; }}};
@@ -63,6 +64,7 @@ inline constexpr StageOf kStartGate{
     {.name = "start gate",
      .parameters = "start_gate",
      .cost = "constant",
+     .senses = true,
      .before_start = true,
      .needs = [](const HandModel& model) { return model.start_gate.hold_ticks > 0; },
      .reason =

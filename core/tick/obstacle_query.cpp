@@ -95,6 +95,23 @@ contact::QueryAnswer queryObstacles(const HandModel& model, const ObstaclePoses&
     return all;
 }
 
+bool overlapsObstacle(const HandModel& model, std::uint32_t i, const Pose& X_WO, const Pose& X_WS, double accepted,
+                      QueryMemory& memory, Report& report) noexcept {
+    const Obstacle& obstacle = model.obstacles[i];
+    const contact::QueryRequest request{.collect_below = -1e300,
+                                        .search_below = -accepted,
+                                        .mode = model.contact.mode,
+                                        .facing = model.contact.two_way,
+                                        .edges = true};
+    memory.scratch.clear();
+    contact::QueryAnswer answer = query(*obstacle.field, X_WO, *model.shell, *model.edges, X_WS, request,
+                                        memory.workspace, memory.scratch, nullptr);
+    if (obstacle.shell != nullptr)
+        merge(queryBack(model, obstacle, X_WO, X_WS, request, memory.workspace, memory.scratch, nullptr), answer);
+    account(answer, report);
+    return answer.found;
+}
+
 std::uint32_t workOf(const contact::QueryAnswer& answer) noexcept {
     return static_cast<std::uint32_t>(answer.nodes_visited + answer.points_tested + answer.points_spared +
                                       2 * answer.contacts);

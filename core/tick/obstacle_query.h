@@ -20,6 +20,11 @@ contact::QueryAnswer queryObstacles(const HandModel& model, const ObstaclePoses&
                                     contact::ContactManifold& manifold, std::span<ObstaclePush> pushes = {},
                                     std::span<PairCertificates> known = {}) noexcept;
 
+/// True if a point of the held part at `X_WS` lies in obstacle `i` at `X_WO` by more than `accepted` [m], or in two-way
+/// contact one of the obstacle's in the held part. rt-safe.
+bool overlapsObstacle(const HandModel& model, std::uint32_t i, const Pose& X_WO, const Pose& X_WS, double accepted,
+                      QueryMemory& memory, Report& report) noexcept;
+
 /// What a query took, in units of about 45 ns: nodes, points, and contacts twice. rt-safe.
 std::uint32_t workOf(const contact::QueryAnswer& answer) noexcept;
 

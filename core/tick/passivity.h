@@ -36,6 +36,7 @@ inline constexpr StageOf kEnergyAccount{
     {.name = "energy account",
      .parameters = "",
      .cost = "constant, and a little for each obstacle",
+     .senses = true,
      .before_start = true,
      .needs = [](const HandModel&) { return true; },
      .reason =

@@ -134,7 +134,8 @@ void lookAt(const ProxyView& view, const Pose& X_WG, double reach, double search
     account(answer, report);
     proxy.X_WG = X_WG;
     proxy.manifold_reach = reach;
-    proxy.clearance = answer.phi;
+    proxy.clearance = proxy.clearance_bound = answer.phi;
+    noteObstacles(view);
 }
 
 void startTool(const ProxyView& view, const HandSample& hand, ToolMotion& tool) noexcept {
@@ -145,6 +146,7 @@ void startTool(const ProxyView& view, const HandSample& hand, ToolMotion& tool) 
         tool.has_last_hand = false;
         tool.last = motion::Motion::Zero();
     }
+    forgetMoved(view);
     const double reach = kLongestStep * view.model.finest_cell;
     if (proxy.manifold_reach < 0.0) lookAt(view, proxy.X_WG, reach, reach);
 }

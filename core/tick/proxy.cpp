@@ -98,6 +98,7 @@ void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double s
     proxy.X_WG = X_WG;
     proxy.manifold_reach = reach;
     proxy.clearance = proxy.clearance_bound = answer.phi;
+    noteObstacles(view);
     for (const contact::ContactPoint& contact : proxy.manifold)
         proxy.clearance_bound = std::min(proxy.clearance_bound, contact.phi);
     if (!(proxy.clearance_bound > reach)) return;
@@ -125,7 +126,34 @@ bool lookAround(const ProxyView& view, const Pose& X_WG, double reach, double se
     proxy.manifold_reach = look.reach;
     proxy.clearance = look.nearest;
     proxy.clearance_bound = look.clearance_bound;
+    noteObstacles(view);
     return true;
+}
+
+void noteObstacles(const ProxyView& view) noexcept {
+    const auto& moving = view.model.moving;
+    for (std::size_t i = 0; i < moving.size(); ++i) view.proxy.X_WO_known[i] = view.obstacles.X_WO[moving[i]];
+}
+
+void forgetMoved(const ProxyView& view) noexcept {
+    const auto& [model, proxy, memory, report, obstacles] = view;
+    double nearer = 0.0;
+    bool touched = false;
+    for (std::size_t i = 0; i < model.moving.size(); ++i) {
+        const std::uint32_t obstacle = model.moving[i];
+        const Pose &before = proxy.X_WO_known[i], &now = obstacles.X_WO[obstacle];
+        if (now.p == before.p && now.q.coeffs() == before.q.coeffs()) continue;
+        const Pose back = before * now.inverse();
+        const double around = model.reach + std::max(0.0, proxy.clearance_bound);
+        nearer = std::max(nearer, (back * proxy.X_WG.p - proxy.X_WG.p).norm() + rotationVector(back.q).norm() * around);
+        touched = touched || std::any_of(proxy.manifold.begin(), proxy.manifold.end(),
+                                         [=](const auto& contact) { return contact.obstacle == obstacle; });
+    }
+    if (nearer == 0.0 || proxy.manifold_reach < 0.0) return;
+    proxy.manifold_reach -= nearer;
+    proxy.clearance_bound -= nearer;
+    if (touched || proxy.manifold_reach < kShortestReach * model.finest_cell) proxy.manifold_reach = -1.0;
+    noteObstacles(view);
 }
 
 ProxyPlace placeOf(const Proxy& proxy) noexcept {
@@ -165,10 +193,11 @@ bool startProxy(const MovingProxy& moving) noexcept {
         proxy.X_WG = moving.hand.X_WH;
         proxy.manifold_reach = -1.0;
         proxy.step.look.open = false;
-        proxy.step.X_WH_followed = moving.hand.X_WH;
+        proxy.step.X_WT_followed = moving.hand.X_WH;
         moving.motion.rubbing = {};
     }
     clearPushes(moving.pushes);
+    forgetMoved(moving);
     if (!(proxy.manifold_reach < 0.0)) return true;
     const double reach = kLongestStep * moving.model.finest_cell;
     return lookAround(moving, proxy.X_WG, reach, reach);
@@ -181,7 +210,7 @@ double nextReach(const HandModel& model, double last_motion) noexcept {
 
 bool arriveFreely(const MovingProxy& moving, double path, double reach, double accepted) noexcept {
     const Pose X_here = moving.proxy.X_WG;
-    queryAround(moving, moving.hand.X_WH, reach, std::max(reach, 2.0 * path));
+    queryAround(moving, moving.X_WT, reach, std::max(reach, 2.0 * path));
     if (overlap(moving.proxy) <= accepted) {
         moving.motion.rubbing = {};  // free
         clearPushes(moving.pushes);
@@ -192,15 +221,15 @@ bool arriveFreely(const MovingProxy& moving, double path, double reach, double a
     return false;
 }
 
-void noteFollowed(Proxy& proxy, const Pose& X_WH, double share) noexcept {
-    Pose& followed = proxy.step.X_WH_followed;
-    followed = share == 1.0 ? X_WH : Pose{followed.q.slerp(share, X_WH.q), followed.p + share * (X_WH.p - followed.p)};
+void noteFollowed(Proxy& proxy, const Pose& X_WT, double share) noexcept {
+    Pose& followed = proxy.step.X_WT_followed;
+    followed = share == 1.0 ? X_WT : Pose{followed.q.slerp(share, X_WT.q), followed.p + share * (X_WT.p - followed.p)};
 }
 
 void noteLag(const MovingProxy& moving, bool arrived) noexcept {
-    Pose& followed = moving.proxy.step.X_WH_followed;
-    if (arrived) followed = moving.hand.X_WH;
-    moving.proxy.lag = longestPath(moving.model, unconstrainedMotion(moving.model, followed, moving.hand.X_WH));
+    Pose& followed = moving.proxy.step.X_WT_followed;
+    if (arrived) followed = moving.X_WT;
+    moving.proxy.lag = longestPath(moving.model, unconstrainedMotion(moving.model, followed, moving.X_WT));
 }
 
 motion::Surroundings surroundings(const HandModel& model, const Proxy& proxy) noexcept {

@@ -41,6 +41,7 @@ struct ProxyView {
 /// What they move it by, towards the hand.
 struct MovingProxy : ProxyView {
     const HandSample& hand;
+    const Pose& X_WT;  // Pull
     ProxyMotion& motion;
     Pushes& pushes;
 };
@@ -59,6 +60,16 @@ void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double s
 /// The same, under a budget of nodes perhaps in several ticks: begins a look, or goes on with the one that is open,
 /// whatever is asked. False: it has not ended, and the proxy and what is known of it stay. rt-safe.
 bool lookAround(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept;
+
+/// After a look: where the obstacles that move were.
+void noteObstacles(const ProxyView& view) noexcept;
+
+/// What is known around the proxy, where parts in other hands have moved since it was looked up. Points of such a part
+/// that are within d of the held part now have come nearer by no more than
+///   |ΔX⁻¹ o - o| + |Δφ| (R + d),   o the proxy's origin, R the held part's reach, ΔX the part's motion:
+/// by so much less is known, and less room is proven. Where one of its points was among the contacts, or so little is
+/// left that a step could use it up, all of it is void.
+void forgetMoved(const ProxyView& view) noexcept;
 
 /// A place of the proxy, and what is known there but for the contacts.
 struct ProxyPlace {
@@ -113,8 +124,8 @@ double nextReach(const HandModel& model, double last_motion) noexcept;
 /// it would overlap there by more than `accepted`.
 bool arriveFreely(const MovingProxy& moving, double path, double reach, double accepted) noexcept;
 
-/// A step was made: `share` of all that a hand at `X_WH` asked for.
-void noteFollowed(Proxy& proxy, const Pose& X_WH, double share) noexcept;
+/// A step was made: `share` of all that `X_WT` asked for.
+void noteFollowed(Proxy& proxy, const Pose& X_WT, double share) noexcept;
 
 /// The tick's motion has ended; `arrived`: nothing is left of it. Notes what it lags behind.
 void noteLag(const MovingProxy& moving, bool arrived) noexcept;

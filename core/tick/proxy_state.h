@@ -9,6 +9,7 @@
 #include "core/contact/edge_search.h"
 #include "core/motion/active_set.h"
 #include "core/motion/friction.h"
+#include "core/tick/energy_account.h"
 
 namespace passung::tick {
 
@@ -16,6 +17,18 @@ namespace passung::tick {
 struct ObstaclePoses {
     static constexpr bool kOnlyRead = true;
     std::vector<Pose> X_WO;
+    // When the tick began, of HandModel::moving and of the held part: some hands have had their turn since
+    std::vector<Pose> X_WO_last;
+    Pose X_WG_last;
+};
+
+/// Where the held part is asked to go, and what pushes it there beside its hand: the hand's pose and nothing, but where
+/// it touches a part in another hand (held_contacts.h). Nobody writes it but step(), before the stages that follow it.
+struct Pull {
+    static constexpr bool kOnlyRead = true;
+    Pose X_WT;
+    std::vector<ObstaclePush> from_hands;  // of each obstacle, as Pushes; empty where no other hand is
+    std::uint32_t contacts_of_hands = 0;   // that push so
 };
 
 /// A look from a pose under a budget of nodes, and how far it has come (field_look.h).
@@ -36,15 +49,15 @@ struct FieldLook {
     contact::EdgePause edges;
 };
 
-/// A step whose end is still being looked at, and where the hand is that it follows.
+/// A step whose end is still being looked at, and what it follows.
 struct SuspendedStep {
     FieldLook look;
     motion::Motion u = motion::Motion::Zero();  // from Proxy::X_WG
     double share = 0.0;                         // of what was allowed
     bool halved = false;
     motion::FrictionPatches rubbing;
-    Pose X_WH;           // the hand when it began
-    Pose X_WH_followed;  // as far as steps that were made followed it
+    Pose X_WT;           // where it was asked to go when it began
+    Pose X_WT_followed;  // as far as steps that were made followed it
 };
 
 /// The held part where it is rendered, and what is known around it. Handed on among the stages of one method of
@@ -61,7 +74,8 @@ struct Proxy {
     std::size_t cuts = 0;
     int tried = 0;
     double lag = std::numeric_limits<double>::quiet_NaN();  // ContactRecord::proxy_lag
-    SuspendedStep step;                                     // under a budget of nodes
+    std::vector<Pose> X_WO_known;  // of HandModel::moving: where they were when this was looked up
+    SuspendedStep step;            // under a budget of nodes
 };
 
 /// Where contacts held the proxy's last motion: each is a point of the held part or of an obstacle.

@@ -1,5 +1,7 @@
 #include "core/tick/scene_sequence.h"
 
+#include <algorithm>
+
 #include "core/tick/tick_model.h"
 #include "core/tick/tick_state.h"
 
@@ -64,8 +66,8 @@ std::vector<PairAccount> SceneSequence::pairs() const {
     return all;
 }
 
-TickOutput SceneSequence::step(const DeviceReading& reading) noexcept {
-    if (engaged_) rendered_ += reading.periods;
+void SceneSequence::step(std::span<const DeviceReading> readings, std::span<TickOutput> outputs) noexcept {
+    if (engaged_) rendered_ += readings.front().periods;
     if (engaged_ && rendered_ >= turns_[current_].periods && current_ + 1 < turns_.size()) {
         const TickState& before = states_[current_];
         TickState& next = states_[++current_];
@@ -74,8 +76,14 @@ TickOutput SceneSequence::step(const DeviceReading& reading) noexcept {
         engaged_ = false;
         rendered_ = 0;
     }
-    const TickOutput output = tick::step(*turns_[current_].model, states_[current_], reading);
-    engaged_ = engaged_ || (output.frame.status & kEngaged) != 0;
+    tick::step(*turns_[current_].model, states_[current_], readings, outputs);
+    engaged_ = engaged_ || std::all_of(outputs.begin(), outputs.end(),
+                                       [](const TickOutput& output) { return (output.frame.status & kEngaged) != 0; });
+}
+
+TickOutput SceneSequence::step(const DeviceReading& reading) noexcept {
+    TickOutput output;
+    step(std::span(&reading, 1), std::span(&output, 1));
     return output;
 }
 

@@ -58,7 +58,10 @@ public:
     SceneSequence(const SceneSequence&) = delete;
     SceneSequence& operator=(const SceneSequence&) = delete;
 
-    /// One tick. rt-safe.
+    /// One tick of scenes that have as many hands as there are readings and outputs. The next scene's turn comes when
+    /// all of them are engaged for its periods. rt-safe.
+    void step(std::span<const DeviceReading> readings, std::span<TickOutput> outputs) noexcept;
+    /// The same of scenes with one hand.
     TickOutput step(const DeviceReading& reading) noexcept;
 
     /// Number of the next tick.

@@ -19,6 +19,7 @@ struct StageCard {
     const char* name;
     const char* parameters;                   // keys of the scene that it follows; empty: none
     const char* cost;                         // in a tick
+    bool senses = false;                      // finds out where the hand is: comes before any part moves
     bool before_start = false;                // runs also while the start gate is closed
     bool (*needs)(const HandModel&);          // whether a scene has what it is for
     const char* (*reason)(const HandModel&);  // why the scene has it
@@ -89,6 +90,7 @@ StageOf(void (*)(const HandModel&, Argument...) noexcept, StageCard) -> StageOf<
 struct Stage {
     const char* name;
     const char* reason;
+    bool senses;        // comes before any part moves
     bool before_start;  // runs also while the start gate is closed
     void (*run)(const HandModel&, HandState&, TickFrame&) noexcept;
 };

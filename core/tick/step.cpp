@@ -1,5 +1,6 @@
 #include "core/tick/step.h"
 
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -56,22 +57,45 @@ void store(std::array<float, 4>& into, const Quat& q) noexcept {
     into = {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z())};
 }
 
-/// One hand's turn.
-TickOutput stepHand(const HandModel& model, TickState& whole, HandState& state, const DeviceReading& reading,
-                    const StageWatch* watch) noexcept {
-    for (const std::uint32_t i : model.moving) state.X_WO[i] = whole.X_WP[model.obstacles[i].body];
-    TickFrame frame;
-    frame.reading = reading;
-    for (std::size_t i = 0; i < model.stages.size(); ++i) {
+/// The stages of a hand from number `begin` until one that does not sense, or all. Where it ended.
+std::size_t runStages(const HandModel& model, HandState& state, TickFrame& frame, std::size_t begin, bool sensing,
+                      const StageWatch* watch) noexcept {
+    std::size_t i = begin;
+    for (; i < model.stages.size(); ++i) {
         const Stage& stage = model.stages[i];
+        if (sensing && !stage.senses) break;
         if (!state.engaged && !stage.before_start) continue;
         stage.run(model, state, frame);
         if (watch != nullptr) watch->after(watch->context, i);
     }
+    return i;
+}
+
+/// Where the hand is.
+std::size_t sense(const HandModel& model, TickState& whole, HandState& state, const DeviceReading& reading,
+                  TickFrame& frame, const StageWatch* watch) noexcept {
+    frame = TickFrame{};
+    frame.reading = reading;
+    for (std::size_t i = 0; i < model.moving.size(); ++i)
+        state.X_WO_last[i] = whole.X_WP[model.obstacles[model.moving[i]].body];
+    if (!model.moving.empty()) state.ObstaclePoses::X_WG_last = whole.X_WP[model.body];
+    const std::size_t next = runStages(model, state, frame, 0, true, watch);
+    // Parts without a proxy are where their hands are, each for the others too.
+    if (state.engaged && model.rendersAtHand()) whole.X_WP[model.body] = frame.X_WH;
+    return next;
+}
+
+/// One hand's turn.
+void takeTurn(const HandModel& model, TickState& whole, HandState& state, std::size_t next, TickOutput& output,
+              const StageWatch* watch) noexcept {
+    for (const std::uint32_t i : model.moving) state.X_WO[i] = whole.X_WP[model.obstacles[i].body];
+    TickFrame& frame = output.frame;
+    runStages(model, state, frame, next, false, watch);
     if (state.engaged) frame.status |= kEngaged;
-    if (reading.periods > 1) frame.status |= kOverrun;
+    if (frame.reading.periods > 1) frame.status |= kOverrun;
     whole.X_WP[model.body] = state.X_WG;
-    return {frame.F_D_B, frame, state.X_WG};
+    output.F_D_B = frame.F_D_B;
+    output.X_WG = state.X_WG;
 }
 
 }  // namespace
@@ -79,10 +103,18 @@ TickOutput stepHand(const HandModel& model, TickState& whole, HandState& state, 
 void step(const TickModel& model, TickState& state, std::span<const DeviceReading> readings,
           std::span<TickOutput> outputs, const StageWatch* watch) noexcept {
     const std::size_t count = model.hands.size();
-    const std::size_t first = static_cast<std::size_t>(state.tick) % count;
+    std::array<std::size_t, scene::kMostHands> next{};
+    std::array<Pose, scene::kMostHands> X_WH;
     for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t hand = (first + i) % count;
-        outputs[hand] = stepHand(model.hands[hand], state, state.hands[hand], readings[hand], watch);
+        next[i] = sense(model.hands[i], state, state.hands[i], readings[i], outputs[i].frame, watch);
+        X_WH[i] = outputs[i].frame.X_WH;
+    }
+    const std::size_t first = static_cast<std::size_t>(state.tick) % count;
+    const Turns turns =
+        balanceHands(model.hands, state.hands, std::span(X_WH).first(count), first, state.held_contacts);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t hand = turns[i];
+        takeTurn(model.hands[hand], state, state.hands[hand], next[hand], outputs[hand], watch);
     }
     for (const TickOutput& output : outputs) mixOutputs(state.hash, output.frame, output.X_WG);
     ++state.tick;

@@ -37,11 +37,11 @@ SurfaceFollow surfaceFollow(const HandModel& model) {
     return follow;
 }
 
-void followOnSurface(const HandModel& model, const HandSample& hand, Proxy& proxy, SurfaceFollow& follow,
-                     Pushes& pushes, Report& report) noexcept {
+void followOnSurface(const HandModel& model, const HandSample& hand, const Pull& pull, Proxy& proxy,
+                     SurfaceFollow& follow, Pushes& pushes, Report& report) noexcept {
     // A spring from the old place would throw the hand across the room.
     if (hand.relocated) follow.surface->place(hand.X_WH);
-    const surface::SurfaceTick& now = follow.surface->advance(hand.X_WH);
+    const surface::SurfaceTick& now = follow.surface->advance(pull.X_WT);
     follow.gap = now.gap;
     follow.contacts = static_cast<std::uint32_t>(now.active);
     proxy.X_WG = now.X_WG;
@@ -55,10 +55,10 @@ void followOnSurface(const HandModel& model, const HandSample& hand, Proxy& prox
     noteRows(model, *follow.surface, pushes);
 }
 
-void describeSurface(const HandModel&, const SurfaceFollow& follow, ContactRecord& record) noexcept {
+void describeSurface(const HandModel&, const Pull& pull, const SurfaceFollow& follow, ContactRecord& record) noexcept {
     record.proxy_depth = 0.0;
     record.proxy_gap = follow.gap;
-    record.contacts = follow.contacts;
+    record.contacts = std::max(pull.contacts_of_hands, follow.contacts);
 }
 
 void measureSurfaceDepth(const HandModel&, const HandSample& hand, const SurfaceFollow& follow,

@@ -34,8 +34,8 @@ struct SurfaceFollow {
 SurfaceFollow surfaceFollow(const HandModel& model);
 
 /// Stages, in this order. rt-safe.
-void followOnSurface(const HandModel& model, const HandSample& hand, Proxy& proxy, SurfaceFollow& follow,
-                     Pushes& pushes, Report& report) noexcept;
+void followOnSurface(const HandModel& model, const HandSample& hand, const Pull& pull, Proxy& proxy,
+                     SurfaceFollow& follow, Pushes& pushes, Report& report) noexcept;
 inline constexpr StageOf kSurfaceProxy{
     followOnSurface,
     {.name = "surface proxy",
@@ -52,7 +52,8 @@ inline constexpr StageOf kSurfaceProxy{
          }}};
 
 /// The proven gap, and the contacts that hold the proxy.
-void describeSurface(const HandModel& model, const SurfaceFollow& follow, ContactRecord& record) noexcept;
+void describeSurface(const HandModel& model, const Pull& pull, const SurfaceFollow& follow,
+                     ContactRecord& record) noexcept;
 inline constexpr StageOf kSurfaceRecord{
     describeSurface,
     {.name = "surface record",

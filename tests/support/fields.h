@@ -27,7 +27,7 @@ struct Anything {
     operator T() const;
 };
 
-inline constexpr std::size_t kMostFields = 9;
+inline constexpr std::size_t kMostFields = 10;
 
 /// How many fields the plain struct T has: the most that it can be made from.
 template <class T, class... Field>
@@ -72,9 +72,12 @@ void eachField(T& value, F f) {
     } else if constexpr (count == 8) {
         auto& [a, b, c, d, e, g, h, i] = value;
         all(a, b, c, d, e, g, h, i);
-    } else {
+    } else if constexpr (count == 9) {
         auto& [a, b, c, d, e, g, h, i, j] = value;
         all(a, b, c, d, e, g, h, i, j);
+    } else {
+        auto& [a, b, c, d, e, g, h, i, j, k] = value;
+        all(a, b, c, d, e, g, h, i, j, k);
     }
 }
 

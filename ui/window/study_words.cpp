@@ -88,6 +88,9 @@ QString orderWord(plan::BlockOrder order) {
                       "contact.method is god_object_heuristic and all pairs have a closed form: steps #1 to #4 on the "
                       "shapes' faces and edges; no distance field, no points"),
     QT_TRANSLATE_NOOP("stages", "closed-form filter"),
+    QT_TRANSLATE_NOOP("stages", "common way"),
+    QT_TRANSLATE_NOOP("stages", "closed-form common way"),
+    QT_TRANSLATE_NOOP("stages", "parts in different hands move in one tick: their common way is free too"),
     QT_TRANSLATE_NOOP("stages", "closed-form record"),
     QT_TRANSLATE_NOOP("stages", "closed-form hand depth"),
     QT_TRANSLATE_NOOP("stages", "surface proxy"),
@@ -105,6 +108,8 @@ QString orderWord(plan::BlockOrder order) {
     QT_TRANSLATE_NOOP("stages", "spring and damper between proxy and hand"),
     QT_TRANSLATE_NOOP("stages", "contact transients"),
     QT_TRANSLATE_NOOP("stages", "effects.transients is set: a decaying vibration is added at every impact"),
+    QT_TRANSLATE_NOOP("stages", "pushes between hands"),
+    QT_TRANSLATE_NOOP("stages", "parts in different hands may touch: what pushes them is accounted for"),
     QT_TRANSLATE_NOOP("stages", "contact shares"),
     QT_TRANSLATE_NOOP("stages", "always: the energy account is kept for each obstacle too"),
     QT_TRANSLATE_NOOP("stages", "output delay"),

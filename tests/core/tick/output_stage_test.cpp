@@ -434,7 +434,7 @@ TEST(OutputStage, KeepsItsContractUnderHostileInput) {
         tick::TickModel model = tick::makeModel(bench.scene());
         auto& stages = model.hands.front().stages;
         stages.insert(stages.end() - 1,
-                      {"probe", "planted", true,
+                      {"probe", "planted", false, true,
                        [](const tick::HandModel&, tick::HandState&, tick::TickFrame& f) noexcept { g_asked = f; }});
         Watch watch(spec.limits);
         Random random(9);
@@ -580,7 +580,7 @@ TEST(OutputStage, LatchesZeroAfterANonFiniteWrenchUntilTheStateIsMadeAnew) {
     pressed(bench, 0.004);
     tick::TickModel broken = tick::makeModel(bench.scene());
     auto& stages = broken.hands.front().stages;
-    stages.insert(stages.end() - 1, {"broken", "planted", true,
+    stages.insert(stages.end() - 1, {"broken", "planted", false, true,
                                      [](const tick::HandModel&, tick::HandState&, tick::TickFrame& f) noexcept {
                                          f.F_H_W.force.x() = std::numeric_limits<double>::quiet_NaN();
                                      }});

@@ -57,6 +57,14 @@ scene::SceneSpec boxOverPlate(scene::ContactMethod method) {
     return spec;
 }
 
+/// The same with the post in a hand of its own.
+scene::SceneSpec besideAnother(scene::SceneSpec spec) {
+    spec.parts.back().held = true;
+    spec.parts.back().hand = 1;
+    spec.other_hands.push_back({spec.limits, spec.registration, spec.start_gate});
+    return spec;
+}
+
 /// Scenes that have every stage between them.
 std::vector<scene::SceneSpec> scenesOfAllStages() {
     using enum scene::ContactMethod;
@@ -82,7 +90,16 @@ std::vector<scene::SceneSpec> scenesOfAllStages() {
     closed_form.contact.proxy_filter = 50.0;
     auto surface = boxOverPlate(GodObject);
     surface.contact.geometry = scene::Geometry::Surface;
-    return {free, penalty, tool, god_object, heuristic, budget, closed_form, surface};
+    return {free,
+            penalty,
+            tool,
+            god_object,
+            heuristic,
+            budget,
+            closed_form,
+            surface,
+            besideAnother(boxOverPlate(GodObject)),
+            besideAnother(closed_form)};
 }
 
 /// A hand that presses, slides and turns; samples are lost, lie, and lie for long.
@@ -94,6 +111,16 @@ DeviceReading readingAt(int tick, Random& random) {
     if (random.below(60) == 0 || tick % 500 > 490) reading.X_BD.p.x() += 0.3;
     if (tick == 0) reading.X_BD.p.z() = 0.3;  // a false first sample: relocated soon after
     return reading;
+}
+
+/// What step() does before the stages of a hand beside another one, whose part goes to and fro and pushes.
+void moveOther(HandState& state, int tick) {
+    for (std::size_t i = 0; i < state.X_WO_last.size(); ++i) {
+        state.X_WO_last[i] = state.X_WO.back();
+        state.X_WO.back().p.x() = 0.01 + 0.004 * std::sin(0.02 * tick);
+        state.ObstaclePoses::X_WG_last = state.X_WG;
+        state.from_hands.back() = {{Vec3(0.1, 0.2, 0.3), Vec3(0.001, 0.002, 0.003)}, 0.4};
+    }
 }
 
 struct Checker {
@@ -171,7 +198,9 @@ TEST(Stage, ReadsAndWritesWhatItDeclaresAndNothingElse) {
             for (int i = 0; i < 1200; ++i) {
                 TickFrame frame;
                 frame.reading = readingAt(i, random);
+                moveOther(bench.state(), i);
                 for (const tick::Stage& stage : bench.model().stages) {
+                    if (!stage.senses) bench.state().X_WT = frame.X_WH;
                     if (!bench.state().engaged && !stage.before_start) continue;
                     checker.checkThat(tick::AllStages{}, stage.run, bench.state(), frame);
                     if (HasFatalFailure()) return;

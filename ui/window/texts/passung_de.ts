@@ -2043,6 +2043,26 @@
         <translation>contact.method ist god_object_heuristic, und alle Paare haben eine geschlossene Form: Schritte #1 bis #4 auf Flächen und Kanten der Formen; kein Abstandsfeld, keine Punkte</translation>
     </message>
     <message>
+        <source>common way</source>
+        <translation>gemeinsamer Weg</translation>
+    </message>
+    <message>
+        <source>closed-form common way</source>
+        <translation>gemeinsamer Weg in geschlossener Form</translation>
+    </message>
+    <message>
+        <source>parts in different hands move in one tick: their common way is free too</source>
+        <translation>Teile in verschiedenen Händen bewegen sich im selben Takt: Auch ihr gemeinsamer Weg ist frei</translation>
+    </message>
+    <message>
+        <source>pushes between hands</source>
+        <translation>Druck zwischen Händen</translation>
+    </message>
+    <message>
+        <source>parts in different hands may touch: what pushes them is accounted for</source>
+        <translation>Teile in verschiedenen Händen können sich berühren: Was sie drückt, wird verbucht</translation>
+    </message>
+    <message>
         <source>closed-form filter</source>
         <translation>Filter in geschlossener Form</translation>
     </message>
