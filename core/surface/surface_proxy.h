@@ -92,7 +92,10 @@ public:
     /// Finds out what is near, whatever it takes. For the time before the first tick.
     void prepare();
 
-    /// KnownBody `i` has gone to X_WB while the held part rested; whoever moved it proved that no triangles met on the
+    /// How much work a tick may be from now on, > 0: what other hands have left. rt-safe.
+    void setBudget(int budget) noexcept { budget_ = settings_.budget = budget; }
+
+    /// Body `i` has gone to X_WB while the held part rested; whoever moved it proved that no triangles met on the
     /// way. What has to be found out about it is work of the next tick. rt-safe, bounded.
     void moveBody(std::size_t i, const Pose& X_WB) noexcept;
     /// Puts body `i` somewhere, maybe over the held part; what was known of it is void. rt-safe, bounded.

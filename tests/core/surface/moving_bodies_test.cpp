@@ -8,8 +8,11 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <numbers>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -48,6 +51,32 @@ TriangleMesh torus() {
             mesh.triangles.push_back({at(i, k), at(i + 1, k), at(i + 1, k + 1)});
             mesh.triangles.push_back({at(i, k), at(i + 1, k + 1), at(i, k + 1)});
         }
+    return mesh;
+}
+/// tests/data/bunny.off, its vertices and triangles as they stand there.
+TriangleMesh bunny() {
+    std::ifstream file(PASSUNG_SOURCE_DIR "/tests/data/bunny.off");
+    std::string line, numbers;
+    std::getline(file, line);
+    while (std::getline(file, line))
+        if (!line.empty() && line[0] != '#') numbers += line + '\n';
+    std::istringstream in(numbers);
+    std::size_t vertices = 0, triangles = 0, edges = 0, corners = 0;
+    in >> vertices >> triangles >> edges;
+    TriangleMesh mesh;
+    geometry::Bounds bounds;
+    for (std::size_t i = 0; i < vertices; ++i) {
+        Vec3 v;
+        in >> v.x() >> v.y() >> v.z();
+        mesh.vertices.push_back(v);
+        bounds.extend(v);
+    }
+    for (std::size_t i = 0; i < triangles; ++i) {
+        geometry::Triangle t{};
+        in >> corners >> t[0] >> t[1] >> t[2];
+        mesh.triangles.push_back(t);
+    }
+    for (Vec3& v : mesh.vertices) v = kSide / bounds.size().maxCoeff() * (v - .5 * (bounds.low + bounds.high));
     return mesh;
 }
 TriangleMesh scan() { return test::bumpyMesh(kSide, 24, 0.3); }
@@ -112,11 +141,14 @@ struct Seen {
     double lag = 0.0;    // of the last tick, when the hands have long gone apart [m]
 };
 
-/// Parts among what rests, each by a proxy of its own that has the others as bodies; they move by turns.
+constexpr int kAnyBudget = 0;  // another one in each tick
+
+/// Parts among what rests, each by a proxy of its own that has the others as bodies; they move by turns, in an order
+/// that changes from tick to tick, and now and then one of them leaves out its turn.
 class InTurns {
 public:
     InTurns(std::vector<Moved> parts, const TriangleMesh& still, int budget)
-        : parts_(std::move(parts)), still_(still), proxies_(parts_.size()), run_(parts_.size(), 0) {
+        : parts_(std::move(parts)), still_(still), budget_(budget), proxies_(parts_.size()), run_(parts_.size(), 0) {
         trees_.reserve(parts_.size());
         for (const Moved& part : parts_) trees_.emplace_back(part.mesh);
         for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -126,7 +158,8 @@ public:
             std::vector<SurfaceBody> bodies;
             for (std::size_t k = 0; k < parts_.size(); ++k)
                 bodies.push_back(k == i ? SurfaceBody{&still_, {}} : SurfaceBody{&trees_[k], parts_[k].hand(0.0)});
-            proxies_[i].emplace(trees_[i], bodies, SurfaceSettings{.metric_radius = .02, .budget = budget});
+            proxies_[i].emplace(trees_[i], bodies,
+                                SurfaceSettings{.metric_radius = .02, .budget = std::max(1, budget)});
             proxies_[i]->place(parts_[i].hand(0.0));
             proxies_[i]->prepare();
         }
@@ -135,8 +168,11 @@ public:
     Seen run(int ticks, int full_every) {
         for (int tick = 0; tick < ticks; ++tick) {
             ++seen_.ticks;
-            for (std::size_t i = 0; i < parts_.size(); ++i) {
+            for (std::size_t turn = 0; turn < parts_.size(); ++turn) {
+                const std::size_t now_at = static_cast<std::size_t>(tick), i = (turn + now_at) % parts_.size();
+                if (tick + 1 < ticks && (now_at + 3 * i) % 11 == 0) continue;
                 SurfaceProxy& proxy = *proxies_[i];
+                if (budget_ == kAnyBudget) proxy.setBudget(100 + static_cast<int>(random_.below(3000)));
                 const Pose X_WH = parts_[i].hand(1e-3 * tick), before = proxy.pose();
                 const SurfaceTick now = proxy.advance(X_WH);
                 judge(i, before, now, tick % full_every == 0);
@@ -193,6 +229,8 @@ private:
     std::vector<Moved> parts_;
     std::vector<ClusterTree> trees_;
     ClusterTree still_;
+    int budget_;
+    Random random_{77};
     std::vector<test::MeshPairTruth> between_, around_;
     std::vector<std::optional<SurfaceProxy>> proxies_;
     std::vector<int> run_;
@@ -246,7 +284,8 @@ INSTANTIATE_TEST_SUITE_P(All, MovedInTurns,
                                          PairOfParts{"sheet on sheet", sheet, sheet},
                                          PairOfParts{"torus on angle", torus, angle},
                                          PairOfParts{"angle on angle", angle, angle},
-                                         PairOfParts{"scan on torus", scan, torus}),
+                                         PairOfParts{"scan on torus", scan, torus},
+                                         PairOfParts{"bunny on sheet", bunny, sheet}),
                          [](const auto& made) {
                              std::string name;
                              for (const char c : std::string(made.param.name))
@@ -274,7 +313,7 @@ TEST(MovingBodies, OfFourHandsNeverMeet) {
 }
 
 TEST(MovingBodies, AnyBudgetKeepsThemApart) {
-    for (const int budget : {200, 2000}) {
+    for (const int budget : {200, 2000, kAnyBudget}) {
         int suspended = 0;
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
             const Seen seen = scene({"torus on angle", torus, angle}, seed, .3, budget).run(300, 10);
@@ -445,6 +484,78 @@ TEST(MovingBodies, PutOverTheHeldPartAreLeft) {
     EXPECT_GT(truth.distance(X_WB.inverse() * proxy.pose(), 1e-9), 0.0);
     const Vec3 seen = X_WB.inverse() * proxy.pose().p;
     EXPECT_GT(seen.z(), .0119);
+}
+
+TEST(MovingBodies, PutOverTheHeldPartAndMovedOnAreLeftToo) {
+    // A start in overlap with a body that goes on, along the way out and across it: at its end nothing lies within, and
+    // nothing crosses.
+    const TriangleMesh cube = test::boxMesh(Vec3::Constant(-.002), Vec3::Constant(.002));
+    const TriangleMesh block = test::boxMesh(Vec3::Constant(-.01), Vec3::Constant(.01));
+    const ClusterTree held(cube), obstacle(block);
+    test::MeshPairTruth truth(cube, block);
+    for (const Vec3& way : {Vec3(0, 0, 2e-4), Vec3(3e-4, 1e-4, 0)}) {
+        const std::array<SurfaceBody, 1> bodies{SurfaceBody{&obstacle, {Quat::Identity(), {.1, 0, 0}}}};
+        SurfaceProxy proxy(held, bodies, {.metric_radius = .02});
+        proxy.place({});
+        proxy.prepare();
+        proxy.placeBody(0, {Quat::Identity(), {-.001, 0, -.005}});
+        Pose X_WB;
+        for (int tick = 0; tick < 80; ++tick) {
+            X_WB.p = Vec3(-.001, 0, -.005) + std::min(tick, 40) * way;
+            proxy.moveBody(0, X_WB);
+            proxy.advance({});
+        }
+        EXPECT_GT(truth.distance(X_WB.inverse() * proxy.pose(), 1e-9), 0.0);
+        EXPECT_GT((X_WB.inverse() * proxy.pose().p).cwiseAbs().maxCoeff(), .0119);
+    }
+}
+
+TEST(MovingBodies, OfWhichManyAreNearAreKeptApartFromAllOfThem) {
+    // 60 cubes in a lattice, each shaken a little where truth leaves room for it, and a part that is pushed through the
+    // lanes between them; lists are shorter and memory is shared by 60.
+    const TriangleMesh block = test::placed(test::boxMesh(Vec3::Constant(-.002), Vec3::Constant(.002)),
+                                            {rotationFromVector({.2, .1, .3}), Vec3::Zero()});
+    const TriangleMesh cube = test::boxMesh(Vec3::Constant(-.0015), Vec3::Constant(.0015));
+    const ClusterTree held(block), tree(cube);
+    std::vector<SurfaceBody> bodies;
+    for (int i = 0; i < 60; ++i)
+        bodies.push_back({&tree, {Quat::Identity(), {.008 * (i % 5 - 2), .008 * (i / 5 % 4) - .012, .008 * (i / 20)}}});
+    SurfaceProxy proxy(held, bodies, {.metric_radius = .02});
+    test::MeshPairTruth truth(block, cube);
+    Random random(21);
+    const Pose start{Quat::Identity(), {.004, .0, -.004}};
+    const test::RandomPath hand(start, {-.004, .004, .01}, {.01, .008, .006}, .8, 9);
+    proxy.place(start);
+    proxy.prepare();
+    int pressed = 0, suspended = 0, crossings = 0, too_high = 0, moved = 0, most_work = 0;
+    for (int tick = 0; tick < 1500; ++tick) {
+        for (int k = 0; k < 10; ++k) {
+            const auto i = static_cast<std::size_t>(random.below(bodies.size()));
+            Pose X = bodies[i].X_WB;
+            X.p += 2e-4 * Vec3(random.normal(), random.normal(), random.normal());
+            X.q =
+                (rotationFromVector(.01 * Vec3(random.normal(), random.normal(), random.normal())) * X.q).normalized();
+            if (truth.distance(X.inverse() * proxy.pose(), 1e-6) < 1e-6) continue;
+            bodies[i].X_WB = X;
+            proxy.moveBody(i, X);
+            ++moved;
+        }
+        const SurfaceTick& now = proxy.advance(hand(1e-3 * tick));
+        double exact = 2e-5;
+        for (const SurfaceBody& body : bodies)
+            exact = std::min(exact, truth.distance(body.X_WB.inverse() * now.X_WG, exact));
+        crossings += exact == 0.0;
+        too_high += now.gap > exact;
+        pressed += now.active > 0;
+        suspended += now.suspended;
+        most_work = std::max(most_work, now.work);
+    }
+    std::printf("many: pressed %d suspended %d moved %d work at most %d\n", pressed, suspended, moved, most_work);
+    EXPECT_EQ(crossings, 0);
+    EXPECT_EQ(too_high, 0);
+    EXPECT_GT(pressed, 200);
+    EXPECT_GT(moved, 10000);
+    EXPECT_LE(suspended, 15);
 }
 
 TEST(MovingBodies, AllocateNothingAndAreTheSameEveryTime) {
