@@ -29,7 +29,7 @@ struct SurfacePiece {
 };
 
 /// One of the meshes of a tree: its faces are ClusterTree::faces()[first … end).
-struct SurfaceBody {
+struct TreeMesh {
     std::uint32_t first = 0, end = 0;
     Bounds box;
 };
@@ -65,7 +65,7 @@ public:
 
     /// The kMostPieces largest ones of each mesh.
     std::span<const SurfacePiece> pieces() const noexcept { return pieces_; }
-    std::span<const SurfaceBody> bodies() const noexcept { return bodies_; }
+    std::span<const TreeMesh> bodies() const noexcept { return bodies_; }
     /// Clusters that are faces, body by body. The corners of such a one lie in order around it.
     std::span<const std::uint32_t> faces() const noexcept { return faces_; }
     static constexpr std::size_t kMostPieces = 16;
@@ -84,7 +84,7 @@ private:
     std::vector<Cluster> clusters_;
     std::vector<double> x_, y_, z_;  // corners
     std::vector<SurfacePiece> pieces_;
-    std::vector<SurfaceBody> bodies_;
+    std::vector<TreeMesh> bodies_;
     std::vector<std::uint32_t> faces_;
     Bounds box_;
     double reach_ = 0.0;

@@ -65,7 +65,8 @@ void set(ContactRow& row, const Placement& X) noexcept {
 }  // namespace
 
 bool ContactRow::isLike(const ContactRow& other) const noexcept {
-    return held == other.held && obstacle == other.obstacle && on_held == other.on_held && fixed == other.fixed &&
+    return body == other.body && held == other.held && obstacle == other.obstacle && on_held == other.on_held &&
+           fixed == other.fixed &&
            (!fixed || ((p_held - other.p_held).squaredNorm() < kSamePlace * kSamePlace &&
                        (p_obstacle - other.p_obstacle).squaredNorm() < kSamePlace * kSamePlace &&
                        (n - other.n).squaredNorm() < kSameTurn * kSameTurn));

@@ -6,23 +6,25 @@
 
 namespace passung::surface {
 
-/// A plane that the hand's way pressed two faces against, as a linear condition of the held part's motion:
+/// A plane that the hand's way pressed two faces against, as a linear condition of the held part's motion, all of it
+/// in the frame of the obstacle's body; X is the held part's pose there:
 ///   n · (X p_held - p_obstacle) ≥ gap.
 struct ContactRow {
+    std::uint32_t body = 0;                // whose the obstacle's face is
     std::uint32_t held = 0, obstacle = 0;  // faces: clusters of the two trees
     bool on_held = false;                  // the plane turns with the held part
     bool fixed = true;                     // its points are features; else they are found again at each pose
-    Vec3 n = Vec3::Zero();                 // unit, world, at the pose of now
+    Vec3 n = Vec3::Zero();                 // unit, body frame, at the pose of now
     Vec3 n_held = Vec3::Zero();            // the same in the part frame
     Vec3 p_held = Vec3::Zero();            // part frame [m]
-    Vec3 p_obstacle = Vec3::Zero();        // world [m]
+    Vec3 p_obstacle = Vec3::Zero();        // body frame [m]
     double s = 0.0;                        // n · (X p_held - p_obstacle) at the pose of now [m]
     double bend = 0.0;                     // ≤ 0: what the rows' linear motion overlooks [m]
     double push = 0.0;                     // of the last motion [m]: times the coupling's stiffness, its force
     int idle = 0;                          // ticks since it held
     CornerSeed seed = {};                  // where its points were found
 
-    /// Where it acts, world.
+    /// Where it acts, body frame.
     Vec3 point(const Placement& X) const noexcept { return on_held ? p_obstacle : X * p_held; }
     /// The gap at another pose [m].
     double gapAt(const Placement& X) const noexcept {

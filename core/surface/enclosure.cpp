@@ -36,7 +36,7 @@ double hitOf(const Vec3& d, const Vec3& a, const Vec3& b, const Vec3& c) noexcep
 /// A piece of one part, and a body of the other.
 struct EnclosureSearch::Pair {
     const ClusterTree& outer;
-    const geometry::SurfaceBody& body;
+    const geometry::TreeMesh& body;
     const geometry::SurfacePiece& piece;
     Placement X;  // of the piece in the body's frame
     Vec3 corner;  // the piece's own [m]; this and what follows: the body's frame

@@ -29,25 +29,33 @@ int workOf(const HullPair& pair) { return 3 + static_cast<int>(pair.of_held.coun
 
 HullPair SurfaceProxy::hulls(std::uint32_t pair) const noexcept {
     const ClusterPair& of = forest_[pair];
-    return {*held_, *obstacles_, (*held_)[of.held], (*obstacles_)[of.obstacle]};
+    const ClusterTree& tree = *bodies_[of.body].tree;
+    return {*held_, tree, (*held_)[of.held], tree[of.obstacle]};
 }
 
-void SurfaceProxy::setSleeps() noexcept {
+void SurfaceProxy::setSleeps(std::size_t i) noexcept {
+    KnownBody& body = bodies_[i];
     for (std::size_t c = 0; c < NormalClass::kCount; ++c)
-        sleeps_[c] = std::max({kSeen, std::max(kMargin * ahead_[c], usual_[c]) + gap_ + 2.0 * PairForest::kBucket,
-                               forest_.sureOf(c) + PairForest::kBucket});
+        body.sleeps[c] =
+            std::max({kSeen, std::max(kMargin * body.ahead[c], body.usual[c]) + gap_ + 2.0 * PairForest::kBucket,
+                      forest_.sureOf(PairForest::listOf(i, c)) + PairForest::kBucket});
 }
 
+/// Sorts those that wait. False: the budget ended.
 bool SurfaceProxy::settle() noexcept {
-    if (forest_.hasWaiting()) {
-        setSleeps();
-        const double any = *std::max_element(sleeps_.begin(), sleeps_.end());
-        while (forest_.hasWaiting()) {
-            if (spent()) return false;
-            sort(forest_.takeWaiting(), any);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        KnownBody& body = bodies_[i];
+        if (!body.in_reach) continue;
+        if (forest_.hasWaiting(i)) {
+            setSleeps(i);
+            const double any = *std::max_element(body.sleeps.begin(), body.sleeps.end());
+            while (forest_.hasWaiting(i)) {
+                if (spent()) return false;
+                sort(forest_.takeWaiting(i), any);
+            }
         }
+        for (std::size_t c = 0; c < NormalClass::kCount; ++c) body.settled[c] = forest_.dueOf(PairForest::listOf(i, c));
     }
-    for (std::size_t c = 0; c < NormalClass::kCount; ++c) settled_[c] = forest_.dueOf(c);
     return true;
 }
 
@@ -55,23 +63,25 @@ void SurfaceProxy::push(std::uint32_t pair, const Vec3& n, double s, bool meets)
     forest_[pair].now = ClusterPair::Now::Near;
     const HullPair of = hulls(pair);
     const bool faces = of.of_held.isFace() && of.of_obstacle.isFace();
-    near_[near_count_++] = {n, n, s, s, of.of_held.centre, of.of_held.radius, pair, meets, faces, {}};
+    near_[near_count_++] = {n,    n,     s,     s,  of.of_held.centre, of.of_held.radius,
+                            pair, meets, faces, {}, forest_[pair].body};
 }
 
 /// Finds out whether a pair that waits is far, near, or too near to be one. `any`: a pair farther apart sleeps whatever
 /// its plane is.
 void SurfaceProxy::sort(std::uint32_t at, double any) noexcept {
     const HullPair pair = hulls(at);
-    const Vec3 between = P_ * pair.of_held.centre - pair.of_obstacle.centre;
+    const KnownBody& body = bodies_[forest_[at].body];
+    const Vec3 between = body.P * pair.of_held.centre - pair.of_obstacle.centre;
     const double apart = between.norm();
     tick_.work += kFetched;
     const double by_balls = apart - pair.of_held.radius - pair.of_obstacle.radius;
     if (by_balls >= any) return fallAsleep(at, between / apart, by_balls);
     const Vec3 last = forest_[at].n;
     const bool faces = pair.of_held.isFace() && pair.of_obstacle.isFace();
-    const NearestHulls nearest = nearestHulls(pair, P_, last, sleeps_, faces ? kRounding : gap_);
+    const NearestHulls nearest = nearestHulls(pair, body.P, last, body.sleeps, faces ? kRounding : gap_);
     tick_.work += nearest.looks * workOf(pair);
-    if (sleeps(nearest.n, nearest.separation)) return fallAsleep(at, nearest.n, nearest.separation);
+    if (body.sleepsWith(nearest.n, nearest.separation)) return fallAsleep(at, nearest.n, nearest.separation);
     if (nearest.separation > (faces ? 0.0 : gap_)) return push(at, nearest.n, nearest.separation, false);
     if (faces) return push(at, nearest.n, 0.0, true);
     const std::uint32_t child = splitPair(at);
@@ -93,8 +103,11 @@ void SurfaceProxy::fallAsleep(std::uint32_t at, const Vec3& n, double s) noexcep
         if (least < kMergeBeyond) return;
         const HullPair pair = hulls(parent);
         tick_.work += workOf(pair);
-        const double both = separationAlong(pair, P_, n);
-        if (both < std::max(kMergeShare * least, kMergeBeyond) || both <= forest_.sureOf(NormalClass::of(n))) return;
+        const std::size_t body = forest_[parent].body;
+        const double both = separationAlong(pair, bodies_[body].P, n);
+        if (both < std::max(kMergeShare * least, kMergeBeyond) ||
+            both <= forest_.sureOf(PairForest::listOf(body, NormalClass::of(n))))
+            return;
         forest_.merge(parent);
         at = parent;
         s = both;
@@ -166,27 +179,28 @@ SurfaceProxy::Checked SurfaceProxy::check() noexcept {
 bool SurfaceProxy::proves(NearPair& near) noexcept {
     const double need = needOf(near.s, near.faces);
     const double on_the_way = kOnTheWay * need + arc_ + kRounding;
+    const KnownBody& body = bodies_[near.body];
     near.n_next = near.n;
     ++tick_.work;
     if (near.s >= on_the_way) {
-        const Vec3 m = turn_.transpose() * near.n;
-        near.s_next = near.s + near.n.dot(move_) + m.dot(near.centre) - m.norm() * near.radius;
+        const Vec3 m = body.turn.transpose() * near.n;
+        near.s_next = near.s + near.n.dot(body.move) + m.dot(near.centre) - m.norm() * near.radius;
         if (near.s_next >= need && near.s_next >= on_the_way) return true;
     }
     const HullPair pair = hulls(near.pair);
     if (near.s >= on_the_way) {
-        near.s_next = separationAlong(pair, P_next_, near.n);
+        near.s_next = separationAlong(pair, body.P_next, near.n);
         tick_.work += workOf(pair);
         if (near.s_next >= need && near.s_next >= on_the_way) return true;
     }
     const double enough = std::max(need, on_the_way);
-    const NearestHulls swept =
-        nearestHulls(pair, P_, P_next_, near.n, enough + kAhead * way_, near.faces ? on_the_way : enough, near.seed);
+    const NearestHulls swept = nearestHulls(pair, body.P, body.P_next, near.n, enough + kAhead * way_,
+                                            near.faces ? on_the_way : enough, near.seed);
     tick_.work += swept.looks * workOf(pair);
     if (swept.separation >= enough) {
         near.n = near.n_next = swept.n;
-        near.s = separationAlong(pair, P_, swept.n);
-        near.s_next = separationAlong(pair, P_next_, swept.n);
+        near.s = separationAlong(pair, body.P, swept.n);
+        near.s_next = separationAlong(pair, body.P_next, swept.n);
         return true;
     }
     return near.faces && provesFaces(near, pair, swept.separation);
@@ -194,14 +208,15 @@ bool SurfaceProxy::proves(NearPair& near) noexcept {
 
 /// With the planes that are best at either end. `swept`: what one plane sets both ends apart by.
 bool SurfaceProxy::provesFaces(NearPair& near, const HullPair& pair, double swept) noexcept {
-    const NearestHulls now = nearestPoints(pair, P_, near.n, near.seed);
+    const KnownBody& body = bodies_[near.body];
+    const NearestHulls now = nearestPoints(pair, body.P, near.n, near.seed);
     tick_.work += now.looks * workOf(pair);
     if (now.separation > near.s) {
         near.s = now.separation;
         near.n = near.n_next = now.n;
     }
     const double need = needOf(near.s, true);
-    const NearestHulls then = nearestPoints(pair, P_next_, near.n, near.seed);
+    const NearestHulls then = nearestPoints(pair, body.P_next, near.n, near.seed);
     tick_.work += then.looks * workOf(pair);
     if (then.meets || then.separation < need) return false;
     near.n_next = then.n;
@@ -209,10 +224,10 @@ bool SurfaceProxy::provesFaces(NearPair& near, const HullPair& pair, double swep
     const double on_the_way = kOnTheWay * need + arc_ + kRounding;
     if (swept >= on_the_way) return true;
     tick_.work += 3 * workOf(pair);
-    if (provesTurning(pair, {P_, near.n}, {P_next_, then.n}, on_the_way)) return true;
-    const Vec3 carried = P_next_.R * (P_.R.transpose() * near.n);
-    if (provesTurning(pair, {P_, near.n}, {P_next_, carried}, on_the_way)) {
-        const double s = separationAlong(pair, P_next_, carried);
+    if (provesTurning(pair, {body.P, near.n}, {body.P_next, then.n}, on_the_way)) return true;
+    const Vec3 carried = body.P_next.R * (body.P.R.transpose() * near.n);
+    if (provesTurning(pair, {body.P, near.n}, {body.P_next, carried}, on_the_way)) {
+        const double s = separationAlong(pair, body.P_next, carried);
         if (s >= need) {
             near.n_next = carried;
             near.s_next = s;
@@ -225,12 +240,13 @@ bool SurfaceProxy::provesFaces(NearPair& near, const HullPair& pair, double swep
 /// The way in pieces, each with the planes that are best at its ends.
 bool SurfaceProxy::provesParts(const NearPair& near, const HullPair& pair, const Vec3& n_end, double need) noexcept {
     constexpr int kParts = 1 << kTurnSteps;
-    PlaneAt from{P_, near.n};
+    const KnownBody& body = bodies_[near.body];
+    PlaneAt from{body.P, near.n};
     CornerSeed seed = near.seed;
     for (int i = 1; i <= kParts; ++i) {
-        PlaneAt to{P_next_, n_end};
+        PlaneAt to{body.P_next, n_end};
         if (i < kParts) {
-            to.X = Placement(poseOnWay(i / double(kParts)));
+            to.X = body.seen(Placement(poseOnWay(i / double(kParts))));
             const NearestHulls there = nearestPoints(pair, to.X, from.n, seed);
             tick_.work += there.looks * workOf(pair);
             if (there.meets) return false;
@@ -278,15 +294,16 @@ void SurfaceProxy::addRow(NearPair& near) noexcept {
         return;
     }
     const HullPair pair = hulls(near.pair);
-    Placement X = P_;
+    const KnownBody& body = bodies_[near.body];
+    Placement X = body.P;
     CornerSeed seed = near.seed;
-    NearestHulls there = nearestPoints(pair, P_, near.n, seed);
+    NearestHulls there = nearestPoints(pair, body.P, near.n, seed);
     const double need = needOf(near.s, true);
     double from = 0.0, to = 1.0;
     int looks = there.looks;
     for (int i = 0; i < kTouchSteps; ++i) {
         const double middle = 0.5 * (from + to);
-        const Placement X_middle(poseOnWay(middle));
+        const Placement X_middle = body.seen(Placement(poseOnWay(middle)));
         const NearestHulls now = nearestPoints(pair, X_middle, there.n, seed);
         looks += now.looks;
         if (!now.meets && now.separation >= need &&
@@ -301,8 +318,9 @@ void SurfaceProxy::addRow(NearPair& near) noexcept {
     tick_.work += looks * workOf(pair);
     least_share_ = std::min(least_share_, from);
     if (there.meets || there.separation <= 0.0) return;
-    ContactRow row = rowBetween(pair, P_, X, there, P_next_);
+    ContactRow row = rowBetween(pair, body.P, X, there, body.P_next);
     if (!(row.s > 0.0)) return;
+    row.body = near.body;
     row.held = forest_[near.pair].held;
     row.obstacle = forest_[near.pair].obstacle;
     std::size_t place = row_count_;
@@ -325,25 +343,35 @@ void SurfaceProxy::accept() noexcept {
     rest_before_ = rest_;
     gone_ = u_;
     if (limited_ && rounds_ == 0) trust_ = std::max(trust_, std::min(2.0 * trust_, kFastest));
+    hurry_ = std::min(1.0, 2.0 * hurry_);
     X_ = X_next_;
     P_ = P_next_;
-    forest_.travel(nearer_);
+    travelled_ += way_;
     way_in_tick_ += way_;
     chain_[chain_count_++] = X_;
     ++tick_.looks;
     phase_ = Phase::Idle;
-    ahead_ = nearer_;
-    for (std::size_t c = 0; c < NormalClass::kCount; ++c) usual_[c] = std::max(nearer_[c], kFading * usual_[c]);
-    setSleeps();
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        KnownBody& body = bodies_[i];
+        if (!body.in_reach) continue;
+        body.P = body.P_next;
+        if (body.asks) body.enclosure.restart();
+        forest_.travel(i, body.nearer);
+        body.ahead = body.nearer;
+        for (std::size_t c = 0; c < NormalClass::kCount; ++c)
+            body.usual[c] = std::max(body.nearer[c], kFading * body.usual[c]);
+        setSleeps(i);
+    }
     overlaps_ = false;
     tick_.work += static_cast<int>(near_count_ / 2);
     for (std::size_t i = 0; i < near_count_;) {
         NearPair& near = near_[i];
+        KnownBody& body = bodies_[near.body];
         near.n = near.n_next;
         near.s = near.meets ? 0.0 : near.s_next;
         if (near.meets || (near.faces && near.s < 1.2 * gap_)) {
             const HullPair pair = hulls(near.pair);
-            const NearestHulls now = nearestPoints(pair, P_, near.n, near.seed);
+            const NearestHulls now = nearestPoints(pair, body.P, near.n, near.seed);
             tick_.work += now.looks * workOf(pair);
             if (now.separation > near.s) {
                 near.n = near.n_next = now.n;
@@ -351,7 +379,7 @@ void SurfaceProxy::accept() noexcept {
                 near.meets = false;
             }
         }
-        if (sleeps(near.n, near.s)) {
+        if (body.sleepsWith(near.n, near.s)) {
             const NearPair gone = near;
             near_[i] = near_[--near_count_];
             fallAsleep(gone.pair, gone.n, gone.s);
@@ -359,11 +387,9 @@ void SurfaceProxy::accept() noexcept {
         }
         near.n_next = near.n;
         overlaps_ = overlaps_ || near.meets;
+        if (near.meets) ask(body);
         ++i;
     }
-    if (!overlaps_) return;
-    asks_ = true;
-    enclosure_.restart();
 }
 
 }  // namespace passung::surface

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace passung::surface {
 
@@ -36,8 +37,12 @@ constexpr double kMostRelaxed = 8.0, kLeastRelaxed = 0.4;
 constexpr double kNearlyWhole = 0.95;  // of a motion: shortened by less, it is not solved for again
 constexpr double kPart = 0.3;          // of a motion that leaves an overlap: along the hand
 
-std::size_t pairsFor(const ClusterTree& held, const ClusterTree& obstacles) {
-    return std::clamp<std::size_t>(16 * (held.size() + obstacles.size()), 1u << 16, 1u << 20);
+constexpr int kApproachWork = 40;  // of one body more
+
+std::size_t pairsFor(const ClusterTree& held, std::span<const SurfaceBody> bodies) {
+    std::size_t size = held.size();
+    for (const SurfaceBody& body : bodies) size += body.tree->size();
+    return std::clamp<std::size_t>(16 * size, 1u << 16, 1u << 20);
 }
 
 motion::Motion motionTo(const Pose& X, const Pose& X_WH, double rho) noexcept {
@@ -49,32 +54,39 @@ motion::Motion motionTo(const Pose& X, const Pose& X_WH, double rho) noexcept {
 }  // namespace
 
 SurfaceProxy::SurfaceProxy(const ClusterTree& held, const ClusterTree& obstacles, const SurfaceSettings& settings)
+    : SurfaceProxy(held, std::array{SurfaceBody{&obstacles, {}}}, settings) {}
+
+SurfaceProxy::SurfaceProxy(const ClusterTree& held, std::span<const SurfaceBody> bodies,
+                           const SurfaceSettings& settings)
     : held_(&held),
-      obstacles_(&obstacles),
       settings_(settings),
       budget_(settings.budget),
-      forest_(pairsFor(held, obstacles)),
-      near_(forest_.capacity() / 2 + 1),  // leaves of trees that part in two
+      forest_(pairsFor(held, bodies), bodies.size()),
+      near_(forest_.capacity() / 2 + bodies.size()),  // leaves of trees that part in two
       rows_(kMostRows),
       manifold_(kMostRows),
-      gap_(settings.gap),
-      enclosure_(held, obstacles) {
+      gap_(settings.gap) {
+    bodies_.reserve(bodies.size());
+    for (const SurfaceBody& body : bodies) bodies_.emplace_back(held, body);
     place({});
 }
 
 void SurfaceProxy::place(const Pose& X_WG) noexcept {
-    forest_.restart();
     near_count_ = row_count_ = 0;
     X_ = X_WG;
     P_ = Placement(X_);
-    last_way_ = 0.0;
-    settled_.fill(0.0);
-    ahead_.fill(0.0);
-    usual_.fill(0.0);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        KnownBody& body = bodies_[i];
+        body.P = body.seen(P_);
+        forget(i);
+        ask(body);
+        body.in_reach = bodies_.size() == 1;
+        body.clear = 0.0;
+    }
+    last_way_ = travelled_ = 0.0;
+    hurry_ = 1.0;
     least_ = 0.0;
-    overlaps_ = false;
-    enclosure_.restart();
-    asks_ = true;
+    overlaps_ = moved_ = false;
     left_to_lead_ = 0.0;
     X_WH_last_.reset();
     gone_.setZero();
@@ -85,45 +97,12 @@ void SurfaceProxy::place(const Pose& X_WG) noexcept {
 void SurfaceProxy::prepare() {
     budget_ = std::numeric_limits<int>::max();
     tick_ = {};
+    findReach();
+    catchUp();
     settle();
     knowsItsSide();
     budget_ = settings_.budget;
     tell();
-}
-
-/// After triangles crossed, or at a new place: finds out whether something lies within the other part, once none cross
-/// any more. False: the budget ended.
-bool SurfaceProxy::knowsItsSide() noexcept {
-    if (!asks_) return true;
-    overlaps_ = false;
-    for (std::size_t i = 0; i < near_count_; ++i) overlaps_ = overlaps_ || near_[i].meets;
-    if (overlaps_) return true;
-    const Vec3 hand = X_WH_last_ ? Vec3(X_WH_last_->p - X_.p) : Vec3::Zero();
-    if (!enclosure_.advance(P_, hand, tick_.work, budget_)) return false;
-    asks_ = false;
-    if (!enclosure_.encloses()) return true;
-    left_to_lead_ = enclosure_.wayOut().norm();
-    lead_ = enclosure_.wayOut() / left_to_lead_;
-    row_count_ = 0;
-    return true;
-}
-
-/// A tick on the way out of the other part. At its end all is looked at anew.
-const SurfaceTick& SurfaceProxy::lead() noexcept {
-    const double step = std::min(left_to_lead_, kFastest);
-    left_to_lead_ -= step;
-    X_.p += step * lead_;
-    P_ = Placement(X_);
-    chain_[chain_count_++] = X_;
-    tick_.X_WG = X_;
-    tick_.meets = true;
-    tick_.looks = 1;
-    ++tick_.work;
-    if (left_to_lead_ > 0.0) return tick_;
-    const std::optional<Pose> X_WH = X_WH_last_;
-    place(X_);
-    X_WH_last_ = X_WH;
-    return tick_;
 }
 
 double SurfaceProxy::wayBetween(const Placement& from, const Placement& to) const noexcept {
@@ -166,14 +145,21 @@ void SurfaceProxy::limit(double most) noexcept {
         way_ = arc_ = 0.0;
         limited_ = true;
     }
-    turn_ = P_next_.R - P_.R;
-    move_ = P_next_.p - P_.p;
 }
 
-/// What the look brings nearer, class by class.
+/// What the look brings nearer, class by class, to each body.
 void SurfaceProxy::measureNearer() noexcept {
-    measureApproach(held_->box(), turn_, move_, nearer_);
-    for (double& nearer : nearer_) nearer = std::min(nearer + arc_, way_);
+    int measured = 0;
+    for (KnownBody& body : bodies_) {
+        if (!body.in_reach) continue;
+        body.P_next = body.seen(P_next_);
+        body.turn = body.P_next.R - body.P.R;
+        body.move = body.P_next.p - body.P.p;
+        measureApproach(held_->box(), body.turn, body.move, body.nearer);
+        for (double& nearer : body.nearer) nearer = std::min(nearer + arc_, way_);
+        ++measured;
+    }
+    tick_.work += kApproachWork * std::max(0, measured - 1);
 }
 
 /// The rows at the pose of now; those that lost their meaning go.
@@ -181,7 +167,7 @@ void SurfaceProxy::refreshRows() noexcept {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < row_count_; ++i) {
         ContactRow row = rows_[i];
-        if (!refresh(row, {*held_, *obstacles_, (*held_)[row.held], (*obstacles_)[row.obstacle]}, P_)) continue;
+        if (!refresh(row, hulls(row), bodies_[row.body].P)) continue;
         tick_.work += row.fixed ? 1 : 40;
         bool twice = false;
         for (std::size_t k = 0; k < kept && !twice; ++k) twice = rows_[k].isLike(row);
@@ -197,20 +183,25 @@ void SurfaceProxy::adaptGap() noexcept {
     for (std::size_t i = 0; i < row_count_; ++i) {
         const ContactRow& row = rows_[i];
         if (!(row.push > 0.0)) continue;
+        const Vec3 across_row = normalOf(row);
         for (std::size_t k = 0; k < near_count_; ++k) {
             NearPair& near = near_[k];
-            const auto faces = [&] { return near.s + row.s < room && near.n.dot(row.n) < kOpposite; };
+            const KnownBody& body = bodies_[near.body];
+            const auto faces = [&] {
+                return near.s + row.s < room &&
+                       near.n.dot(near.body == row.body ? row.n : body.direction(across_row)) < kOpposite;
+            };
             if (!near.faces || !faces()) continue;
             // A plane that proves something need not be the nearest one.
             if (++refined > kMostRefined) return;
-            const NearestHulls now = nearestPoints(hulls(near.pair), P_, near.n, near.seed);
+            const NearestHulls now = nearestPoints(hulls(near.pair), body.P, near.n, near.seed);
             tick_.work += 5 * now.looks;
             if (now.separation > near.s) {
                 near.n = near.n_next = now.n;
                 near.s = now.separation;
             }
-            const Vec3 across = now.on_obstacle - row.point(P_);
-            const bool same_place = std::abs(across.dot(row.n)) > kStraight * across.norm();
+            const Vec3 across = body.inWorld(now.on_obstacle) - pointOf(row);
+            const bool same_place = std::abs(across.dot(across_row)) > kStraight * across.norm();
             if (faces() && same_place) room = near.s + row.s;
         }
     }
@@ -228,9 +219,9 @@ void SurfaceProxy::solve() noexcept {
         if (row.push > 0.0 && likely_count < likely.size()) likely[likely_count++] = static_cast<std::uint32_t>(i);
         row.push = 0.0;
         contact::ContactPoint contact{};
-        contact.position = row.point(P_);
-        contact.normal = -row.n;
-        contact.gradient = row.n;
+        contact.position = pointOf(row);
+        contact.gradient = normalOf(row);
+        contact.normal = -contact.gradient;
         contact.phi = std::max(row.s - gap_, -ease_) + row.bend;
         manifold_.tryPush(contact);
     }
@@ -260,7 +251,8 @@ motion::Motion SurfaceProxy::wayOut() const noexcept {
     for (std::size_t i = 0; i < near_count_; ++i) {
         if (!near_[i].meets) continue;
         const HullPair pair = hulls(near_[i].pair);
-        out += pair.of_obstacle.normal - P_.R * pair.of_held.normal;
+        const KnownBody& body = bodies_[near_[i].body];
+        out += body.directionInWorld(pair.of_obstacle.normal - body.P.R * pair.of_held.normal);
     }
     motion::Motion u = wanted_;
     const double room = kFastest - way_in_tick_;
@@ -330,8 +322,13 @@ bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
 /// How much of the look cannot meet a pair that sleeps; 1: all of it.
 double SurfaceProxy::shareKnown() const noexcept {
     double share = 1.0;
-    for (std::size_t c = 0; c < NormalClass::kCount; ++c)
-        if (const double room = forest_.sureOf(c) - gap_; room < share * nearer_[c]) share = room / nearer_[c];
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const KnownBody& body = bodies_[i];
+        if (!body.in_reach) continue;
+        for (std::size_t c = 0; c < NormalClass::kCount; ++c)
+            if (const double room = forest_.sureOf(PairForest::listOf(i, c)) - gap_; room < share * body.nearer[c])
+                share = room / body.nearer[c];
+    }
     return share;
 }
 
@@ -339,14 +336,21 @@ double SurfaceProxy::shareKnown() const noexcept {
 bool SurfaceProxy::wakeAll() noexcept {
     const double more = kMoreShare[std::min(wakes_, kMoreShare.size() - 1)] * most_way_ + kMoreLength;
     ++wakes_;
-    for (std::size_t c = 0; c < NormalClass::kCount; ++c) ahead_[c] = std::min(nearer_[c] + more, most_way_);
+    for (KnownBody& body : bodies_)
+        if (body.in_reach)
+            for (std::size_t c = 0; c < NormalClass::kCount; ++c)
+                body.ahead[c] = std::min(body.nearer[c] + more, most_way_);
     for (;;) {
         if (!settle()) return false;
         if (shareKnown() >= 1.0) break;
         std::size_t woken = 0;
-        for (std::size_t c = 0; c < NormalClass::kCount; ++c)
-            if (forest_.sureOf(c) < nearer_[c] + gap_)
-                woken += forest_.wake(c, ahead_[c] + gap_, kMostWoken - std::min(woken, kMostWoken));
+        for (std::size_t i = 0; i < bodies_.size(); ++i) {
+            const KnownBody& body = bodies_[i];
+            if (!body.in_reach) continue;
+            for (std::size_t c = 0; c < NormalClass::kCount; ++c)
+                if (const std::size_t list = PairForest::listOf(i, c); forest_.sureOf(list) < body.nearer[c] + gap_)
+                    woken += forest_.wake(list, body.ahead[c] + gap_, kMostWoken - std::min(woken, kMostWoken));
+        }
         if (!settle()) return false;
         const double share = shareKnown();
         if (share >= 1.0) break;
@@ -366,8 +370,8 @@ void SurfaceProxy::bendRows() noexcept {
         ContactRow& row = rows_[i];
         const double linear =
             row.s +
-            row.n.dot(Vec3(u_.head<3>() + (u_.tail<3>() / settings_.metric_radius).cross(row.point(P_) - X_.p)));
-        row.bend = std::min(0.0, row.gapAt(P_next_) - linear);
+            normalOf(row).dot(Vec3(u_.head<3>() + (u_.tail<3>() / settings_.metric_radius).cross(pointOf(row) - X_.p)));
+        row.bend = std::min(0.0, row.gapAt(bodies_[row.body].P_next) - linear);
     }
 }
 
@@ -408,9 +412,14 @@ bool SurfaceProxy::tryAgain(bool violated) noexcept {
     return true;
 }
 
+HullPair SurfaceProxy::hulls(const ContactRow& row) const noexcept {
+    const ClusterTree& tree = *bodies_[row.body].tree;
+    return {*held_, tree, (*held_)[row.held], tree[row.obstacle]};
+}
+
 /// True if a row's faces are far from each other at a pose at which their planes are not: it is one beyond their ends.
 bool SurfaceProxy::isGhost(const ContactRow& row, const Placement& X) noexcept {
-    const HullPair pair{*held_, *obstacles_, (*held_)[row.held], (*obstacles_)[row.obstacle]};
+    const HullPair pair = hulls(row);
     const double far = 1.5 * std::max(row.gapAt(X), gap_) + kLeastGap;
     const NearestHulls there = nearestHulls(pair, X, row.n, far, far);
     tick_.work += 5 * there.looks;
@@ -421,10 +430,9 @@ bool SurfaceProxy::isGhost(const ContactRow& row, const Placement& X) noexcept {
 bool SurfaceProxy::dropsGhosts() noexcept {
     ++ghosts_;
     std::size_t kept = 0;
-    const Placement& X = P_next_;
     for (std::size_t i = 0; i < row_count_; ++i) {
         const ContactRow& row = rows_[i];
-        if (!(row.push > 0.0) || !isGhost(row, X)) rows_[kept++] = row;
+        if (!(row.push > 0.0) || !isGhost(row, bodies_[row.body].P_next)) rows_[kept++] = row;
     }
     const bool any = kept < row_count_;
     row_count_ = kept;
@@ -433,17 +441,20 @@ bool SurfaceProxy::dropsGhosts() noexcept {
 
 const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
     tick_ = {};
+    tick_.work = std::min(std::exchange(owed_, 0), budget_ / 2);
     chain_count_ = 0;
     const double hand_way = X_WH_last_ ? wayBetween(Placement(*X_WH_last_), Placement(X_WH)) : 0.0;
     X_WH_last_ = X_WH;
     if (left_to_lead_ > 0.0) return lead();
-    trust_ = std::max({kLeastTrust, 1.5 * hand_way, std::min(2.0 * last_way_, kFastest)});
+    trust_ = hurry_ * std::max({kLeastTrust, 1.5 * hand_way, std::min(2.0 * last_way_, kFastest)});
     most_in_tick_ = overlaps_ ? kFastest : std::max(kFastest, 1.5 * hand_way);
     most_held_ = std::min(most_in_tick_, std::max(kFastestHeld, 1.5 * hand_way));
     way_in_tick_ = 0.0;
+    findReach();
     if (phase_ == Phase::Idle) {
-        ahead_.fill(0.0);
-        if (!settle() || !knowsItsSide()) tick_.suspended = true;
+        for (KnownBody& body : bodies_)
+            if (body.in_reach) body.ahead.fill(0.0);
+        if (!catchUp() || !settle() || !knowsItsSide()) tick_.suspended = true;
         if (left_to_lead_ > 0.0) return lead();
     }
     while (!tick_.suspended && static_cast<std::size_t>(tick_.looks) < kMostLooks) {
@@ -490,7 +501,7 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
 void SurfaceProxy::refineLeast() noexcept {
     double told = kSeen;
     const auto refine = [&](NearPair& near) {
-        const NearestHulls now = nearestPoints(hulls(near.pair), P_, near.n, near.seed);
+        const NearestHulls now = nearestPoints(hulls(near.pair), bodies_[near.body].P, near.n, near.seed);
         tick_.work += 5 * now.looks;
         if (now.separation > near.s) {
             near.n = near.n_next = now.n;
@@ -505,8 +516,10 @@ void SurfaceProxy::refineLeast() noexcept {
         refine(*least);
         told = std::min(told, least->s);
     }
-    for (std::size_t c = 0; c < NormalClass::kCount; ++c)
-        if (forest_.sureOf(c) < told) forest_.wake(c, told, kMostWoken);
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        for (std::size_t c = 0; bodies_[i].in_reach && c < NormalClass::kCount; ++c)
+            if (const std::size_t list = PairForest::listOf(i, c); forest_.sureOf(list) < told)
+                forest_.wake(list, told, kMostWoken);
     if (!settle()) return;
     for (std::size_t i = 0; i < near_count_ && !spent();) {
         NearPair& near = near_[i];
@@ -532,22 +545,26 @@ void SurfaceProxy::tell() noexcept {
     least_ = least;
     tick_.X_WG = X_;
     double proven = std::min(least, kSeen);
-    for (std::size_t c = 0; c < NormalClass::kCount; ++c)
-        proven = std::min(proven, settled_[c] - forest_.travelledOf(c));
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        for (std::size_t c = 0; bodies_[i].in_reach && c < NormalClass::kCount; ++c)
+            proven = std::min(proven, bodies_[i].settled[c] - forest_.travelledOf(PairForest::listOf(i, c)));
     tick_.gap = std::max(0.0, proven - kTold);
     tick_.meets = overlaps_;
     tick_.rows = static_cast<int>(row_count_);
     for (std::size_t i = 0; i < row_count_; ++i)
-        if (rows_[i].push > 0.0 && rows_[i].gapAt(P_) <= kTouches * gap_ && !isGhost(rows_[i], P_)) ++tick_.active;
+        if (const Placement& X = bodies_[rows_[i].body].P;
+            rows_[i].push > 0.0 && rows_[i].gapAt(X) <= kTouches * gap_ && !isGhost(rows_[i], X))
+            ++tick_.active;
 }
 
 double SurfaceProxy::handDepth(const Pose& X_WH) const noexcept {
     double depth = 0.0;
     const Placement hand(X_WH);
-    for (std::size_t i = 0; i < row_count_; ++i)
-        if (rows_[i].push > 0.0)
-            depth = std::max(
-                depth, rows_[i].n.dot(rows_[i].point(P_) - hand * (P_.R.transpose() * (rows_[i].point(P_) - P_.p))));
+    for (const ContactRow& row : rows()) {
+        if (!(row.push > 0.0)) continue;
+        const Vec3 point = pointOf(row);
+        depth = std::max(depth, normalOf(row).dot(point - hand * (P_.R.transpose() * (point - P_.p))));
+    }
     return depth;
 }
 

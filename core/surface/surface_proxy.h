@@ -10,8 +10,8 @@
 #include "core/contact/contact_query.h"
 #include "core/motion/constrained_motion.h"
 #include "core/surface/contact_row.h"
-#include "core/surface/enclosure.h"
 #include "core/surface/pair_forest.h"
+#include "core/surface/surface_body.h"
 
 namespace passung::surface {
 
@@ -34,17 +34,18 @@ struct SurfaceTick {
     int rows = 0, active = 0;  // conditions, and those that hold the pose
 };
 
-/// Keeps a held part's triangles from ever meeting those of the obstacles while it follows a hand.
+/// Keeps a held part's triangles from ever meeting those of bodies while it follows a hand. Bodies rest while it moves
+/// and may be moved in between.
 ///
 /// Source: a kinetic certificate for each pair of clusters (Basch, Guibas, Hershberger 1997) instead of a measured
 /// overlap; the motion by Gauss's principle of least constraint under the rows of those pairs that it would violate
 /// (constrained_motion.h).
 ///
-/// Invariant: at the accepted pose X each pair of faces is covered by one pair of clusters, which is either asleep with
-/// key k, so that its distance is at least k - S, or near, with a plane (n, s): its hulls are set apart by s > 0 along
-/// n. S is the way travelled toward planes like the one that set the sleeping pair apart: for each class of normals it
-/// grows by the most that any point of the part came nearer to such a plane (approach.h). Nothing else is assumed of
-/// the meshes: no inside, no closedness.
+/// Invariant: with X = X_BG the accepted pose seen from a body, each pair of faces, one of either, is covered by one
+/// pair of clusters, which is either asleep with key k, so that its distance is at least k - S, or near, with a plane
+/// (n, s) of the body's frame: its hulls are set apart by s > 0 along n. S is the way travelled toward planes like the
+/// one that set the sleeping pair apart: for each class of normals it grows by the most that any point of the part came
+/// nearer to such a plane (approach.h). Nothing else is assumed of the meshes: no inside, no closedness.
 ///
 /// A look: rows -> nearest pose to the hand -> all pairs whose key is due wake -> each near pair must be set apart at
 /// the new pose AND on the way there -> those that are not become rows, and it is solved again. A pose is accepted only
@@ -53,6 +54,20 @@ struct SurfaceTick {
 /// chord. With n turning from n0 to n1 the separation is a polynomial in t of second degree: it stays above its least
 /// Bernstein coefficient  n0·a0 - h0,  ½(n0·a1 + n1·a0 - h0 - h1),  n1·a1 - h1,  less e.
 /// A cluster's hull is proven from one number: any x within r of c has  n · Δx ≥ n · Δc - |Dᵀ n| r,  D = R1 - R0.
+///
+/// A body that moved, from X_BG to X_BG' while the held part rested: a plane of its frame moved with it, so that
+/// against it the part went from one pose to the other. No way between is assumed. What is known at X_BG' is less:
+///   asleep  n · x' ≥ n · x - d, d the most of class of n by (R' - R, p' - p): S grows by d, the key holds;
+///   near    s' = s + n · Δc - |Dᵀ n| r, as above; one that is left with too little is sorted anew, as are those asleep
+///           that are due now. Until then the part stays where it is, however many ticks of work that is;
+///   rows    features of either frame: only where they are now differs. The look that was begun is given up.
+/// After a motion above kVoid nothing of the body is known, and it is found out from the roots.
+/// No crossing: movers take turns. While one moves all others rest, so that its own proof holds against the frame of
+/// each, for its whole way; then each of the others is told (moveBody), and begins its own way with what is true at
+/// that pose. Two faces are apart at each pose of any way, and each way begins where the one before has ended. A body
+/// moved together with the part leaves all of it as it is: only relative poses are kept.
+///
+/// Bodies out of reach: boxes that are farther apart than any tick goes. Nothing of them is kept or looked at.
 ///
 /// Held by rows, and for three ticks after that, the proxy goes no faster than kFastestHeld, or half as fast again as
 /// the hand: past an edge it slides through several ticks, and the force with it. Where rows turn with the pose, a look
@@ -64,10 +79,12 @@ struct SurfaceTick {
 ///
 /// Limit cases: nothing near → the hand. One plane → the hand's projection onto it, one gap away. Where two sides leave
 /// less than 8 gaps, the gap shrinks to an eighth of what is there. Rounding: kWelded and 1e-10 m, which are 1/100 of
-/// the least gap.
+/// the least gap. One body whose frame is the world's: the same bits as without frames.
 class SurfaceProxy {
 public:
-    /// The trees outlive this. The obstacles' is one, in the world.
+    /// The trees outlive this. @pre less than 65 536 bodies
+    SurfaceProxy(const ClusterTree& held, std::span<const SurfaceBody> bodies, const SurfaceSettings& settings);
+    /// One body, at rest in the world's frame.
     SurfaceProxy(const ClusterTree& held, const ClusterTree& obstacles, const SurfaceSettings& settings);
 
     /// Puts the held part somewhere; the past is void. rt-safe; the next ticks find out what is near.
@@ -75,16 +92,30 @@ public:
     /// Finds out what is near, whatever it takes. For the time before the first tick.
     void prepare();
 
+    /// How much work a tick may be from now on, > 0: what other hands have left. rt-safe.
+    void setBudget(int budget) noexcept { budget_ = settings_.budget = budget; }
+
+    /// Body `i` has gone to X_WB while the held part rested; whoever moved it proved that no triangles met on the
+    /// way. What has to be found out about it is work of the next tick. rt-safe, bounded.
+    void moveBody(std::size_t i, const Pose& X_WB) noexcept;
+    /// Puts body `i` somewhere, maybe over the held part; what was known of it is void. rt-safe, bounded.
+    void placeBody(std::size_t i, const Pose& X_WB) noexcept;
+
     /// Follows the hand. rt-safe, bounded by the budget.
     const SurfaceTick& advance(const Pose& X_WH) noexcept;
 
-    /// Rows that hold the pose: those with `push` > 0; which triangle of the obstacles each is of.
+    /// Rows that hold the pose: those with `push` > 0. Each is of a face of its `body`, in that frame.
     std::span<const ContactRow> rows() const noexcept { return {rows_.data(), row_count_}; }
-    std::uint32_t obstacleTriangle(const ContactRow& row) const noexcept {
-        return (*obstacles_)[row.obstacle].triangle;
+    /// Which triangle of the body's tree it is of.
+    std::uint32_t triangleOf(const ContactRow& row) const noexcept {
+        return (*bodies_[row.body].tree)[row.obstacle].triangle;
     }
-    /// Where it acts, world.
-    Vec3 pointOf(const ContactRow& row) const noexcept { return row.point(P_); }
+    /// Its normal and where it acts, world.
+    Vec3 normalOf(const ContactRow& row) const noexcept { return bodies_[row.body].directionInWorld(row.n); }
+    Vec3 pointOf(const ContactRow& row) const noexcept {
+        const KnownBody& body = bodies_[row.body];
+        return body.inWorld(row.point(body.P));
+    }
     const Pose& pose() const noexcept { return X_; }
     /// The poses accepted in the last tick, in order.
     std::span<const Pose> chain() const noexcept { return {chain_.data(), chain_count_}; }
@@ -95,6 +126,7 @@ public:
     static constexpr double kLeastGap = 1e-7;     // [m]
     static constexpr double kFastest = 1e-3;      // of the proxy where the hand is slower [m/tick]
     static constexpr double kFastestHeld = 5e-5;  // and where rows hold it [m/tick]
+    static constexpr double kVoid = 3e-3;         // of a body at once: farther, it is found anew [m]
     static constexpr std::size_t kMostLooks = 16;
     static constexpr std::size_t kMostRows = 96;
 
@@ -108,6 +140,7 @@ private:
         bool meets;  // triangles cross: no plane yet
         bool faces;  // it cannot be split
         CornerSeed seed;
+        std::uint16_t body;
     };
     struct PlaneAt {
         Placement X;
@@ -116,14 +149,26 @@ private:
     enum class Phase : std::uint8_t { Idle, Waking, Checking };
     enum class Checked : std::uint8_t { Passed, Violated, Spent };
 
+    // surface_bodies.cpp
+    bool knowsItsSide() noexcept;
+    const SurfaceTick& lead() noexcept;
+    double clearanceOf(const KnownBody& body) const noexcept;
+    void findReach() noexcept;
+    double reach() const noexcept;
+    void forget(std::size_t i) noexcept;
+    void giveUpLook() noexcept;
+    void ask(KnownBody& body) noexcept;
+    void release(std::size_t at) noexcept;
+    void moveNear() noexcept;
+    bool catchUp() noexcept;
+
     // surface_proof.cpp
     HullPair hulls(std::uint32_t pair) const noexcept;
     /// True if a look that is accepted now takes what is left.
     bool spent() const noexcept { return tick_.work >= budget_ - std::min(static_cast<int>(near_count_), budget_ / 4); }
-    void setSleeps() noexcept;
+    void setSleeps(std::size_t i) noexcept;
     bool settle() noexcept;
     void sort(std::uint32_t at, double any) noexcept;
-    bool sleeps(const Vec3& n, double s) const noexcept { return s >= sleeps_[NormalClass::of(n)]; }
     void push(std::uint32_t pair, const Vec3& n, double s, bool meets) noexcept;
     void fallAsleep(std::uint32_t at, const Vec3& n, double s) noexcept;
     std::uint32_t splitPair(std::uint32_t at) noexcept;
@@ -149,21 +194,20 @@ private:
     double goodEnough() const noexcept;
     bool isHeld() const noexcept;
     motion::Motion wayOut() const noexcept;
-    bool knowsItsSide() noexcept;
-    const SurfaceTick& lead() noexcept;
     bool beginLook(const Pose& X_WH) noexcept;
     void measureNearer() noexcept;
     double shareKnown() const noexcept;
     bool wakeAll() noexcept;
     void bendRows() noexcept;
     bool tryAgain(bool violated) noexcept;
+    HullPair hulls(const ContactRow& row) const noexcept;
     bool isGhost(const ContactRow& row, const Placement& X) noexcept;
     bool dropsGhosts() noexcept;
     void refineLeast() noexcept;
     void tell() noexcept;
 
     const ClusterTree* held_;
-    const ClusterTree* obstacles_;
+    std::vector<KnownBody> bodies_;
     SurfaceSettings settings_;
     int budget_;
 
@@ -176,13 +220,15 @@ private:
 
     Pose X_;                    // accepted
     Placement P_;               // the same
-    PerClass settled_{};        // keys of all that are not near are no less [m]
     double gap_, least_ = 0.0;  // held; the least proven at X_ [m]
     double last_way_ = 0.0;     // in the last tick [m]
     int since_held_ = 0;        // ticks
     bool overlaps_ = false;
-    EnclosureSearch enclosure_;
-    bool asks_ = true;           // whether something lies wholly within the other part
+    bool asks_ = true;           // of some body whether something lies wholly within the other part
+    bool moved_ = false;         // some body was, and what is known of it was not brought up to date
+    double travelled_ = 0.0;     // since the part was placed [m]
+    double hurry_ = 1.0;         // of a look's way: less where bodies that move stop it again and again
+    int owed_ = 0;               // work since the last tick
     Vec3 lead_ = Vec3::Zero();   // the way out of it, unit, world
     double left_to_lead_ = 0.0;  // [m]
     std::optional<Pose> X_WH_last_;
@@ -198,12 +244,6 @@ private:
     motion::Motion rest_before_ = motion::Motion::Zero(), gone_ = motion::Motion::Zero();  // and the look before
     Placement P_next_;
     motion::Motion wanted_ = motion::Motion::Zero(), u_ = motion::Motion::Zero();
-    Mat3 turn_ = Mat3::Zero();  // R1 - R0
-    Vec3 move_ = Vec3::Zero();  // p1 - p0
-    PerClass nearer_{};         // by the look
-    PerClass ahead_{};          // by what may come of it, and in the next one
-    PerClass usual_{};          // the most of late: who may be due soon stays awake
-    PerClass sleeps_{};         // pairs that are set apart by that may sleep
     double most_way_ = 0.0, way_ = 0.0, arc_ = 0.0, ease_ = 0.0, least_share_ = 1.0;
     std::size_t at_ = 0, wakes_ = 0;
     bool front_only_ = false, violated_ = false, limited_ = false;

@@ -1,6 +1,7 @@
 #include "core/tick/surface_follow.h"
 
 #include <algorithm>
+#include <array>
 
 #include "core/tick/contact_energy.h"
 
@@ -16,9 +17,9 @@ void noteRows(const HandModel& model, const surface::SurfaceProxy& surface, Push
     for (const surface::ContactRow& row : surface.rows()) {
         if (!(row.push > 0.0)) continue;
         const auto& firsts = model.first_triangles;
-        const auto after = std::upper_bound(firsts.begin(), firsts.end(), surface.obstacleTriangle(row));
+        const auto after = std::upper_bound(firsts.begin(), firsts.end(), surface.triangleOf(row));
         ObstaclePush& of = pushes.pushes[static_cast<std::size_t>(after - firsts.begin()) - 1];
-        const Vec3 push = row.push * row.n;
+        const Vec3 push = row.push * surface.normalOf(row);
         of.wrench.force += K * push;
         of.wrench.torque += turn * (surface.pointOf(row) - surface.pose().p).cross(push);
         of.pressure += K * row.push;
@@ -29,8 +30,10 @@ void noteRows(const HandModel& model, const surface::SurfaceProxy& surface, Push
 
 SurfaceFollow surfaceFollow(const HandModel& model) {
     SurfaceFollow follow;
+    // All of them rest in the world: one body.
+    const std::array<surface::SurfaceBody, 1> obstacles{surface::SurfaceBody{model.still_surface, {}}};
     follow.surface.emplace(
-        *model.held_surface, *model.still_surface,
+        *model.held_surface, obstacles,
         surface::SurfaceSettings{.metric_radius = model.metric_radius, .gap = kSurfaceGap, .budget = kSurfaceBudget});
     follow.surface->place(model.X_WG_start);
     follow.surface->prepare();
