@@ -116,6 +116,8 @@ public:
         const KnownBody& body = bodies_[row.body];
         return body.inWorld(row.point(body.P));
     }
+    /// How far the proxy may go against it before it holds, at the pose of now [m].
+    double roomOf(const ContactRow& row) const noexcept { return row.gapAt(bodies_[row.body].P) - gap_; }
     const Pose& pose() const noexcept { return X_; }
     /// The poses accepted in the last tick, in order.
     std::span<const Pose> chain() const noexcept { return {chain_.data(), chain_count_}; }

@@ -47,7 +47,7 @@ void addObstacles(HandModel& model, const World& world) {
     for (std::size_t i = 0; i < world.bodies.size(); ++i) {
         if (i == model.body) continue;
         const Body& body = world.bodies[i];
-        if (body.held) model.moving.push_back(static_cast<std::uint32_t>(model.obstacles.size()));
+        (body.held ? model.moving : model.resting).push_back(static_cast<std::uint32_t>(model.obstacles.size()));
         model.obstacles.push_back({.body = i,
                                    .field = body.field,
                                    .shell = two_way ? body.shell : nullptr,
@@ -115,6 +115,7 @@ HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size
     model.limits = device.limits;
     model.registration = device.registration;
     model.start_gate = device.start_gate;
+    model.hands = static_cast<int>(spec.handCount());
     model.effects = spec.effects;
     model.record_hand_depth = spec.record_hand_depth;
     model.display_wrench = spec.display_wrench;

@@ -42,8 +42,9 @@ struct HandModel {
     // Geometry::Surface only
     const geometry::ClusterTree* held_surface = nullptr;
     const geometry::ClusterTree* still_surface = nullptr;  // of all obstacles that rest, in the world; may be null
-    std::span<const std::uint32_t> first_triangles;        // in that, of each
+    std::span<const std::uint32_t> first_triangles;        // in that, of each of `resting`
     std::vector<Obstacle> obstacles;                       // in the order of the scene
+    std::vector<std::uint32_t> resting;                    // those of them that nobody holds
     std::vector<std::uint32_t> moving;                     // those of them that other hands hold
     std::vector<motion::Friction> friction;  // of each obstacle with the held part; empty: the scene names none
     Pose X_WG_start;
@@ -57,6 +58,7 @@ struct HandModel {
     double metric_radius = 0.0;  // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
     ProxyMargins margins;
     scene::Effects effects;
+    int hands = 1;  // that share the work of a tick
     bool record_hand_depth = true;
     bool display_wrench = true;
 

@@ -43,6 +43,11 @@ void eachContact(const HandModel& model, const HandState& state, Take take) noex
             const closed_form::HeldContact& held = solver.found(i);
             take(Found{held.pair, held.contact.point, held.contact.normal, held.contact.gap});
         }
+    } else if (model.hasSurfaces()) {
+        const surface::SurfaceProxy& surface = *state.surface;
+        for (const surface::ContactRow& row : surface.rows())
+            take(Found{static_cast<std::uint32_t>(obstacleOf(model, surface, row)), surface.pointOf(row),
+                       surface.normalOf(row), surface.roomOf(row)});
     } else if (model.hasFieldProxy()) {
         for (const contact::ContactPoint& contact : state.manifold)
             take(Found{contact.obstacle, contact.position, contact.gradient, contact.phi + model.margins.keep});

@@ -15,8 +15,8 @@ inline constexpr double kShortestReach = 0.04;  // per cell: what is looked at e
 inline constexpr double kReachGrowth = 2.0;     // over the last motion, so that a start from rest is not held back long
 inline constexpr double kStill = 1e-8;          // [m]: a motion below this is none
 inline constexpr int kHalvings = 4;
-// Of looks at fields in a tick, in units of about 45 ns: nodes, points, and contacts twice. No look is begun that would
-// be expected to end beyond it, but for the first; the step goes on in the next tick (kSuspended).
+// Of looks at fields in a tick, of all hands, in units of about 45 ns: nodes, points, and contacts twice. No look is
+// begun that would be expected to end beyond it, but for the first; the step goes on in the next tick (kSuspended).
 inline constexpr std::uint32_t kFieldBudget = 12000;
 inline constexpr std::uint32_t kLooksBetween = 4;  // that the looks between (cutsCorner) take together, at most
 
@@ -83,23 +83,27 @@ ProxyPlace placeOf(const Proxy& proxy) noexcept;
 /// left in the scratch memory, which now holds what was met. rt-safe.
 void takeBack(const ProxyView& view, const ProxyPlace& place) noexcept;
 
-/// Work that a tick may still do on looks at fields, and whether it is enough for `looks` more like the last one.
-/// Without any so far it always is: every tick gets on. rt-safe.
+/// Work that a hand may still do in a tick on looks at fields, and whether it is enough for `looks` more like the last
+/// one. Without any so far it always is: every tick gets on. rt-safe.
 class LookBudget {
 public:
-    explicit LookBudget(const Report& report) noexcept : report_(report), begun_(report.work), before_(report.work) {}
+    LookBudget(const HandModel& model, const Report& report) noexcept
+        : report_(report),
+          most_(kFieldBudget / static_cast<std::uint32_t>(model.hands)),
+          begun_(report.work),
+          before_(report.work) {}
     /// A look begins.
     void begin() noexcept {
         before_ = report_.work;
         any_ = true;
     }
     bool allows(std::uint32_t looks = 1) const noexcept {
-        return !any_ || report_.work - begun_ + looks * (report_.work - before_) <= kFieldBudget;
+        return !any_ || report_.work - begun_ + looks * (report_.work - before_) <= most_;
     }
 
 private:
     const Report& report_;
-    std::uint32_t begun_, before_;
+    std::uint32_t most_, begun_, before_;
     bool any_ = false;
 };
 

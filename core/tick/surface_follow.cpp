@@ -1,7 +1,7 @@
 #include "core/tick/surface_follow.h"
 
 #include <algorithm>
-#include <array>
+#include <vector>
 
 #include "core/tick/contact_energy.h"
 
@@ -16,9 +16,7 @@ void noteRows(const HandModel& model, const surface::SurfaceProxy& surface, Push
     const double turn = model.contact.rotational_stiffness / (model.metric_radius * model.metric_radius);
     for (const surface::ContactRow& row : surface.rows()) {
         if (!(row.push > 0.0)) continue;
-        const auto& firsts = model.first_triangles;
-        const auto after = std::upper_bound(firsts.begin(), firsts.end(), surface.triangleOf(row));
-        ObstaclePush& of = pushes.pushes[static_cast<std::size_t>(after - firsts.begin()) - 1];
+        ObstaclePush& of = pushes.pushes[obstacleOf(model, surface, row)];
         const Vec3 push = row.push * surface.normalOf(row);
         of.wrench.force += K * push;
         of.wrench.torque += turn * (surface.pointOf(row) - surface.pose().p).cross(push);
@@ -28,20 +26,38 @@ void noteRows(const HandModel& model, const surface::SurfaceProxy& surface, Push
 
 }  // namespace
 
+std::size_t obstacleOf(const HandModel& model, const surface::SurfaceProxy& surface,
+                       const surface::ContactRow& row) noexcept {
+    const std::size_t still = model.still_surface != nullptr ? 1 : 0;
+    if (row.body >= still) return model.moving[row.body - still];
+    const auto& firsts = model.first_triangles;
+    const auto after = std::upper_bound(firsts.begin(), firsts.end(), surface.triangleOf(row));
+    return model.resting[static_cast<std::size_t>(after - firsts.begin()) - 1];
+}
+
 SurfaceFollow surfaceFollow(const HandModel& model) {
     SurfaceFollow follow;
-    // All of them rest in the world: one body.
-    const std::array<surface::SurfaceBody, 1> obstacles{surface::SurfaceBody{model.still_surface, {}}};
+    // Those that rest are one body, in the world; then those in other hands.
+    std::vector<surface::SurfaceBody> bodies;
+    if (model.still_surface != nullptr) bodies.push_back({model.still_surface, {}});
+    for (const std::uint32_t i : model.moving) {
+        const Body& body = model.bodies[model.obstacles[i].body];
+        bodies.push_back({body.surface, body.X_WP_start});
+    }
     follow.surface.emplace(
-        *model.held_surface, obstacles,
-        surface::SurfaceSettings{.metric_radius = model.metric_radius, .gap = kSurfaceGap, .budget = kSurfaceBudget});
+        *model.held_surface, bodies,
+        surface::SurfaceSettings{
+            .metric_radius = model.metric_radius, .gap = kSurfaceGap, .budget = kSurfaceBudget / model.hands});
     follow.surface->place(model.X_WG_start);
     follow.surface->prepare();
     return follow;
 }
 
-void followOnSurface(const HandModel& model, const HandSample& hand, const Pull& pull, Proxy& proxy,
-                     SurfaceFollow& follow, Pushes& pushes, Report& report) noexcept {
+void followOnSurface(const HandModel& model, const HandSample& hand, const Pull& pull, const ObstaclePoses& obstacles,
+                     Proxy& proxy, SurfaceFollow& follow, Pushes& pushes, Report& report) noexcept {
+    const std::size_t still = model.still_surface != nullptr ? 1 : 0;
+    for (std::size_t k = 0; k < model.moving.size(); ++k)
+        follow.surface->moveBody(still + k, obstacles.X_WO[model.moving[k]]);
     // A spring from the old place would throw the hand across the room.
     if (hand.relocated) follow.surface->place(hand.X_WH);
     const surface::SurfaceTick& now = follow.surface->advance(pull.X_WT);

@@ -20,7 +20,7 @@ namespace passung::tick {
 /// Limit cases: nothing near → G = H. A plane → G is H's projection onto it, one gap away.
 /// Invariant: no triangle of the held part crosses one of an obstacle, at no pose of the way, but for what a start
 /// overlaps, wholly or in part: that is left at 1 m/s (kLedOut).
-inline constexpr int kSurfaceBudget = 38000;  // units of about 20 ns
+inline constexpr int kSurfaceBudget = 38000;  // units of about 20 ns; of all hands together
 inline constexpr double kSurfaceGap = 1e-6;   // [m]
 
 /// Owner: surface proxy.
@@ -30,12 +30,16 @@ struct SurfaceFollow {
     std::uint32_t contacts = 0;  // that hold it
 };
 
+/// Which obstacle a row is of. rt-safe.
+std::size_t obstacleOf(const HandModel& model, const surface::SurfaceProxy& surface,
+                       const surface::ContactRow& row) noexcept;
+
 /// With what is near the start pose found out. `model` outlives it.
 SurfaceFollow surfaceFollow(const HandModel& model);
 
 /// Stages, in this order. rt-safe.
-void followOnSurface(const HandModel& model, const HandSample& hand, const Pull& pull, Proxy& proxy,
-                     SurfaceFollow& follow, Pushes& pushes, Report& report) noexcept;
+void followOnSurface(const HandModel& model, const HandSample& hand, const Pull& pull, const ObstaclePoses& obstacles,
+                     Proxy& proxy, SurfaceFollow& follow, Pushes& pushes, Report& report) noexcept;
 inline constexpr StageOf kSurfaceProxy{
     followOnSurface,
     {.name = "surface proxy",

@@ -42,6 +42,8 @@ constexpr Way kHeuristic{"closed_form_heuristic", ContactMethod::GodObjectHeuris
 constexpr Way kField{"field", ContactMethod::GodObject, Geometry::Field, 4e-6};
 constexpr Way kFieldHeuristic{"field_heuristic", ContactMethod::GodObjectHeuristic, Geometry::Field, 4e-6};
 
+constexpr Way kSurface{"surface", ContactMethod::GodObject, Geometry::Surface, 3e-6};
+
 class Hands {
 public:
     explicit Hands(const scene::SceneSpec& spec)
@@ -80,7 +82,7 @@ scene::SceneSpec sceneOf(const std::vector<std::pair<shape::Shape, Pose>>& parts
 }
 
 class OfEachWay : public testing::TestWithParam<Way> {};
-INSTANTIATE_TEST_SUITE_P(Hands, OfEachWay, testing::Values(kClosedForm, kHeuristic, kField, kFieldHeuristic),
+INSTANTIATE_TEST_SUITE_P(Hands, OfEachWay, testing::Values(kClosedForm, kHeuristic, kField, kFieldHeuristic, kSurface),
                          [](const auto& of) { return std::string(of.param.name); });
 
 /// Moves the hands there within `ticks`, and rests for as long.
@@ -285,7 +287,7 @@ TEST_P(OfEachWay, NoPartPassesAnotherThatAnotherHandMoves) {
 TEST(Hands, DoNotAllocateOrLockInATick) {
     // Truth: invariant.
     if (!support::RtGuard::available()) GTEST_SKIP();
-    for (const Way& way : {kClosedForm, kField}) {
+    for (const Way& way : {kClosedForm, kField, kSurface}) {
         const Box box{0.02, 0.02, 0.02};
         Hands hands(sceneOf({{box, at(-0.0102, 0, 0)}, {box, at(0.0102, 0, 0)}}, 2, way));
         std::vector<DeviceReading> readings(2);

@@ -99,7 +99,8 @@ std::vector<scene::SceneSpec> scenesOfAllStages() {
             closed_form,
             surface,
             besideAnother(boxOverPlate(GodObject)),
-            besideAnother(closed_form)};
+            besideAnother(closed_form),
+            besideAnother(surface)};
 }
 
 /// A hand that presses, slides and turns; samples are lost, lie, and lie for long.
