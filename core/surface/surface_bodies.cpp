@@ -159,12 +159,14 @@ void SurfaceProxy::moveBody(std::size_t i, const Pose& X_WB) noexcept {
     PerClass nearer;
     measureApproach(held_->box(), body.P.R - before.R, body.P.p - before.p, nearer);
     owed_ += kMoveWork;
-    if (*std::max_element(nearer.begin(), nearer.end()) > kVoid) {
+    const double most = *std::max_element(nearer.begin(), nearer.end());
+    if (most > kVoid) {
         owed_ += static_cast<int>(near_count_ / kLooked);
         forget(i);
         body.behind = true;
         return;
     }
+    swept_ = std::max(swept_, wayBetween(before, body.P));
     if (!body.moved) body.P_known = before;
     body.moved = moved_ = true;
     forest_.travel(i, nearer);

@@ -446,9 +446,10 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
     const double hand_way = X_WH_last_ ? wayBetween(Placement(*X_WH_last_), Placement(X_WH)) : 0.0;
     X_WH_last_ = X_WH;
     if (left_to_lead_ > 0.0) return lead();
+    const double others_way = std::max(hand_way, std::exchange(swept_, 0.0));
     trust_ = hurry_ * std::max({kLeastTrust, 1.5 * hand_way, std::min(2.0 * last_way_, kFastest)});
-    most_in_tick_ = overlaps_ ? kFastest : std::max(kFastest, 1.5 * hand_way);
-    most_held_ = std::min(most_in_tick_, std::max(kFastestHeld, 1.5 * hand_way));
+    most_in_tick_ = overlaps_ ? kFastest : std::max(kFastest, 1.5 * others_way);
+    most_held_ = std::min(most_in_tick_, std::max(kFastestHeld, 1.5 * others_way));
     way_in_tick_ = 0.0;
     findReach();
     if (phase_ == Phase::Idle) {

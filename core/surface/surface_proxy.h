@@ -70,8 +70,8 @@ struct SurfaceTick {
 /// Bodies out of reach: boxes that are farther apart than any tick goes. Nothing of them is kept or looked at.
 ///
 /// Held by rows, and for three ticks after that, the proxy goes no faster than kFastestHeld, or half as fast again as
-/// the hand: past an edge it slides through several ticks, and the force with it. Where rows turn with the pose, a look
-/// goes farther than they say (relaxation()).
+/// the hand or a body that gives way: past an edge it slides through several ticks, and the force with it. Where rows
+/// turn with the pose, a look goes farther than they say (relaxation()).
 ///
 /// A start in overlap: where triangles cross, out along what faces them and along the hand, until none do. Then, and at
 /// each place, it is asked whether something lies wholly within the other part (enclosure.h): if so, the held part goes
@@ -231,6 +231,7 @@ private:
     double travelled_ = 0.0;     // since the part was placed [m]
     double hurry_ = 1.0;         // of a look's way: less where bodies that move stop it again and again
     int owed_ = 0;               // work since the last tick
+    double swept_ = 0.0;         // the farthest that a body has moved since then, seen from the part [m]
     Vec3 lead_ = Vec3::Zero();   // the way out of it, unit, world
     double left_to_lead_ = 0.0;  // [m]
     std::optional<Pose> X_WH_last_;
