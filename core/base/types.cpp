@@ -23,6 +23,8 @@ Quat rotationFromVector(const Vec3& v) noexcept {
     return q;
 }
 
+Quat rotationBetween(const Vec3& from, const Vec3& to) noexcept { return Quat::FromTwoVectors(from, to); }
+
 bool isFinite(const Pose& pose) noexcept { return pose.p.allFinite() && pose.q.coeffs().allFinite(); }
 
 bool isFinite(const Wrench& wrench) noexcept { return wrench.force.allFinite() && wrench.torque.allFinite(); }

@@ -41,6 +41,10 @@ Vec3 rotationVector(const Quat& rotation) noexcept;
 /// Unit quaternion of the rotation vector `v` [rad]. rt-safe.
 Quat rotationFromVector(const Vec3& v) noexcept;
 
+/// The shortest rotation that turns `from` the way of `to`; both of any length but 0. Eigen's, which takes ten seconds
+/// to compile wherever it is used: here once. rt-safe.
+Quat rotationBetween(const Vec3& from, const Vec3& to) noexcept;
+
 /// True if no component is NaN or infinite. rt-safe.
 bool isFinite(const Pose& pose) noexcept;
 bool isFinite(const Wrench& wrench) noexcept;

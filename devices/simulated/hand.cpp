@@ -65,7 +65,7 @@ void Hand::look() noexcept {
     const Vec3 tilt(params_.tilt_error * perception_.normal(), params_.tilt_error * perception_.normal(), 0.0);
     X_WM_ = task_.X_WTarget * Pose{rotationFromVector(tilt), shift};
     const Vec3 axis = X_WM_.q * Vec3::UnitZ();
-    const Quat align = Quat::FromTwoVectors(task_.X_WHeldStart.q * Vec3::UnitZ(), axis);
+    const Quat align = rotationBetween(task_.X_WHeldStart.q * Vec3::UnitZ(), axis);
     q_goal_ = (align * task_.X_WHeldStart.q).normalized();
 }
 

@@ -32,7 +32,7 @@ void PlaceHand::choose(const Percept& percept) noexcept {
             // A round part need not be turned about its axis.
             if (goal_.round)
                 X_WTo.q =
-                    (Quat::FromTwoVectors(X_WRef_.q * Vec3::UnitZ(), X_WTo.q * Vec3::UnitZ()) * X_WRef_.q).normalized();
+                    (rotationBetween(X_WRef_.q * Vec3::UnitZ(), X_WTo.q * Vec3::UnitZ()) * X_WRef_.q).normalized();
             startReach(X_WTo, params_.approach_duration / pace_);
             phase_ = Phase::Reach;
             break;
@@ -66,7 +66,7 @@ void PlaceHand::correct(const Percept& percept) noexcept {
     const Vec3 missing = goal_.X_WGoal.p - percept.X_WSeen.p + error;
     Vec3 turn = rotationVector(goal_.X_WGoal.q * percept.X_WSeen.q.conjugate());
     if (goal_.round)
-        turn = rotationVector(Quat::FromTwoVectors(percept.X_WSeen.q * Vec3::UnitZ(), goal_.X_WGoal.q * Vec3::UnitZ()));
+        turn = rotationVector(rotationBetween(percept.X_WSeen.q * Vec3::UnitZ(), goal_.X_WGoal.q * Vec3::UnitZ()));
     startReach({(rotationFromVector(turn + tilt) * X_WRef_.q).normalized(), X_WRef_.p + missing}, kCorrection / pace_);
     phase_ = Phase::Reach;
 }

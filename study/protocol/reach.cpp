@@ -58,7 +58,7 @@ private:
         const Node& at = valueOf("target");
         // Its axis along the bore's, by the shortest turn: a round peg may keep its yaw.
         const Vec3 along = target_->X_WP.q * Vec3::UnitZ();
-        const Quat upright = Quat::FromTwoVectors(held_.X_WP.q * Vec3::UnitZ(), along) * held_.X_WP.q;
+        const Quat upright = rotationBetween(held_.X_WP.q * Vec3::UnitZ(), along) * held_.X_WP.q;
         const Pose end{upright, target_->X_WP * Vec3(0, 0, -peg.success_fraction * peg.insertion_depth)};
         reach(end, 0.0, at, "task.target", "the end of the insertion");
         handleTurns(tiltBetween(held_.X_WP.q, end.q), kTilt, at, "task.target");
@@ -174,7 +174,7 @@ private:
         for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 1, 0)})
             for (const double way : {1.0, -1.0})
                 for (int step = 0; turns && step < kTurnSteps && least > allowed; ++step) {
-                    const Quat laid = Quat::FromTwoVectors(held_.X_WP.q * (way * axis), along) * held_.X_WP.q;
+                    const Quat laid = rotationBetween(held_.X_WP.q * (way * axis), along) * held_.X_WP.q;
                     const Quat turn(Eigen::AngleAxisd(step * 2.0 * std::numbers::pi / kTurnSteps, along));
                     least = std::min(least, depthAt(held_, {turn * laid, middle}, *target_, geometries_));
                 }

@@ -29,15 +29,26 @@ build_core() {
     c++ -std=c++20 -O1 tests/faults/faults.cpp -o $out/planter
 }
 
-# A worker's own copy, built without faults; what is newer than before is copied, so that little is built again.
+# A worker's own copy, built without faults; what is newer than before is copied, so that little is built again. It is
+# built twice: in pieces, of which a fault in a source compiles one, and each room whole, for faults in headers, which
+# most pieces include.
 build_worker() {
     local tree=$out/$1/tree
     mkdir -p $tree
     copy_changed "$tree"
-    cmake -S tests/faults -B "$out/$1/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1 \
-        -DCMAKE_PREFIX_PATH="$PWD/$out/installed" -DTREE="$PWD/$tree"
-    cmake --build "$out/$1/build" -j 1
-    "$out/$1/build/differential" >"$out/$1/as_it_stands.txt"
+    configure "$1" pieces OFF
+    cmake --build "$out/$1/pieces" -j 1
+    "$out/$1/pieces/differential" >"$out/$1/as_it_stands.txt"
+    grep -q $'\.h\t' "$out/$1/faults.tsv" || return 0
+    configure "$1" whole ON
+    cmake --build "$out/$1/whole" -j 1 --target differential
+    "$out/$1/whole/differential" | cmp - "$out/$1/as_it_stands.txt"
+}
+
+# configure WORKER BUILD ONE_PIECE
+configure() {
+    cmake -S tests/faults -B "$out/$1/$2" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1 \
+        -DCMAKE_PREFIX_PATH="$PWD/$out/installed" -DTREE="$PWD/$out/$1/tree" -DONE_PIECE="$3"
 }
 
 # Copies the sources that differ.
@@ -50,22 +61,22 @@ copy_changed() {
     done < <(find core tests/core tests/support tests/faults -type f)
 }
 
-# tests_find WORKER PART: true if a test fails, falls or hangs.
+# tests_find WORKER BUILD PART: true if a test fails, falls or hangs.
 tests_find() {
-    cmake --build "$out/$1/build" -j 1 --target "$2_tests" >"$out/$1/log.txt" 2>&1 || return 0
-    ! PASSUNG_NO_CACHE=1 timeout $limit "$out/$1/build/$2_tests" --gtest_brief=1 --gtest_fail_fast \
-        >"$out/$1/log.txt" 2>&1
+    cmake --build "$out/$1/$2" -j 1 --target "$3_tests" >"$out/$1/log.txt" 2>&1 || return 0
+    ! PASSUNG_NO_CACHE=1 timeout $limit "$out/$1/$2/$3_tests" --gtest_brief=1 --gtest_fail_fast >"$out/$1/log.txt" 2>&1
 }
 
-# One fault: prints what became of it.
+# judge WORKER PART FILE: prints what became of one fault.
 judge() {
-    local worker=$1 part=$2
-    if ! cmake --build "$out/$worker/build" -j 1 --target differential >"$out/$worker/log.txt" 2>&1; then
+    local worker=$1 part=$2 build=pieces
+    if [[ $3 == *.h ]]; then build=whole; fi
+    if ! cmake --build "$out/$worker/$build" -j 1 --target differential >"$out/$worker/log.txt" 2>&1; then
         printf 'no program'
-    elif timeout $limit "$out/$worker/build/differential" >"$out/$worker/with_fault.txt" 2>/dev/null &&
+    elif timeout $limit "$out/$worker/$build/differential" >"$out/$worker/with_fault.txt" 2>/dev/null &&
         cmp -s "$out/$worker/as_it_stands.txt" "$out/$worker/with_fault.txt"; then
         printf 'no output'
-    elif tests_find "$worker" "$part"; then
+    elif tests_find "$worker" "$build" "$part"; then
         printf 'found'
     else
         printf 'survived'
@@ -81,7 +92,7 @@ work() {
         # An empty column: what stands there is left out.
         if [[ $text == '∅' ]]; then text=; fi
         $out/planter plant "$file" "$out/$worker/tree/$file" "$place" "$length" "$text"
-        printf '%s\t%s\t%s\t%s\t%s\n' "$(judge "$worker" "$part")" "$part" "$file" "$line" "$shown"
+        printf '%s\t%s\t%s\t%s\t%s\n' "$(judge "$worker" "$part" "$file")" "$part" "$file" "$line" "$shown"
     done <"$out/$worker/faults.tsv" >"$out/$worker/results.tsv"
     if [[ -n $last ]]; then cp "$last" "$out/$worker/tree/$last"; fi
 }
@@ -111,7 +122,12 @@ total=$(wc -l <$out/faults.tsv)
 printf '==> %d faults of %d\n' "$total" "$(wc -l <$out/all.tsv)"
 for ((w = 0; w < workers; ++w)); do
     mkdir -p $out/$w
-    awk -v n="$workers" -v w="$w" 'NR % n == w' $out/faults.tsv >$out/$w/faults.tsv
+    # Headers last: a header that stands again is newer than every piece that includes it.
+    awk -F '\t' -v n="$workers" -v w="$w" '
+        NR % n != w { next }
+        $2 ~ /\.h$/ { headers = headers $0 "\n"; next }
+        { print }
+        END { printf "%s", headers }' $out/faults.tsv >$out/$w/faults.tsv
     { build_worker $w >$out/$w/build.log 2>&1 && work $w; } &
 done
 status=0

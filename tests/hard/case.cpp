@@ -121,11 +121,15 @@ Result<Run> runCase(const Case& c, scene::ContactMethod method, std::uint64_t se
     return run;
 }
 
+std::string brokenRule(const Run& run) {
+    const std::string fault = commonFaults(run);
+    return fault.empty() ? followFault(run) : fault;
+}
+
 Judgement judgeRun(const Case& c, const Run& run) {
     Judgement found = c.judge(run);
     if (!std::isfinite(found.value) && found.broken.empty()) found.broken = "not a number";
-    if (found.broken.empty()) found.broken = commonFaults(run);
-    if (found.broken.empty()) found.broken = followFault(run);
+    if (found.broken.empty()) found.broken = brokenRule(run);
     return found;
 }
 

@@ -57,8 +57,12 @@ const Case* findCase(const std::string& name);
 /// Runs a case with `method`, by default in a reduced size, and judges it. Errors: the scene cannot be read or built.
 Result<Measured> measure(const Case& c, scene::ContactMethod method, bool full);
 
-/// The case's own number; besides, every tick must be finite, within the device's limits of force and torque and below
-/// the hard caps of nodes, points and iterations, and the proxy has to follow the device (follow.h).
+/// What every run has to hold, whatever its number: each tick is finite, within the device's limits of force and torque
+/// and below the hard caps of nodes, points and iterations, and the proxy follows the device (follow.h). Returns the
+/// first rule that is broken; empty: none is.
+std::string brokenRule(const Run& run);
+
+/// The case's own number; besides, no rule may be broken.
 Judgement judgeRun(const Case& c, const Run& run);
 
 /// One seed. @pre the case runs a scene.

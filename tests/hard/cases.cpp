@@ -179,7 +179,7 @@ Drive rubCube(const SceneSpec& spec, std::uint64_t seed) {
         const Vec3 there = nearest + 3e-3 * (outside - nearest).normalized();
         // from the start round the cube, then towards it
         const double round = std::min(1.0, t / 0.3), in = std::clamp(t / 0.3 - 1.0, 0.0, 1.0);
-        const Quat q = Quat::Identity().slerp(round, Quat::FromTwoVectors(start, d));
+        const Quat q = Quat::Identity().slerp(round, rotationBetween(start, d));
         const Vec3 from = q * start;
         return DeviceReading{{Quat::Identity(), from + in * (there - from)}};
     };

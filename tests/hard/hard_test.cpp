@@ -178,13 +178,16 @@ TEST(HardCases, NoMarkIsHeldByAProxyThatDoesNotFollowOrByWhatIsNotFelt) {
                 if (seen[i]) continue;
                 auto spoilt = *run;
                 kFaults[i].plant(run->spec, spoilt.ticks);
-                found[i] = judgeRun(c, spoilt);
+                // A broken rule is found in milliseconds, the number of most cases in seconds.
+                found[i].broken = brokenRule(spoilt);
+                if (found[i].broken.empty()) found[i] = judgeRun(c, spoilt);
                 seen[i] = !found[i].broken.empty() || !(found[i].value <= c.mark);
             }
         }
         for (std::size_t i = 0; i < kFaults.size(); ++i) {
-            std::printf("%-20s %-22s %10.4g %-4s %s\n", c.name, kFaults[i].name, found[i].value, c.unit,
-                        found[i].broken.c_str());
+            std::printf("%-20s %-22s %s\n", c.name, kFaults[i].name,
+                        found[i].broken.empty() ? (std::to_string(found[i].value) + ' ' + c.unit).c_str()
+                                                : found[i].broken.c_str());
             EXPECT_TRUE(seen[i]) << c.name << ": a proxy that " << kFaults[i].name;
         }
     }
@@ -287,7 +290,7 @@ TEST(HardCases, NoTickBeyondACapPasses) {
     const auto broken = [&](const auto& plant) {
         auto spoilt = *run;
         plant(spoilt.ticks[400]);
-        return judgeRun(*c, spoilt).broken;
+        return brokenRule(spoilt);
     };
     EXPECT_NE(broken([](Tick& t) { t.nodes = 2'000'000'000; }).find("nodes"), std::string::npos);
     EXPECT_NE(broken([](Tick& t) { t.contacts = 2'000'000'000; }).find("points"), std::string::npos);

@@ -238,7 +238,7 @@ inline SurfaceCase blockOnFin(std::uint64_t seed = 2) {
             RandomPath({Quat::Identity(), {0, 0, .0005}}, {0, 0, -.003}, {.006, .004, .002}, 0.2, seed)};
 }
 inline SurfaceCase cubeOnCorner(std::uint64_t seed = 3) {
-    const Pose up{Quat::FromTwoVectors(Vec3(1, 1, 1), Vec3::UnitZ()), {0, 0, -.01 * std::sqrt(3.0)}};
+    const Pose up{rotationBetween(Vec3(1, 1, 1), Vec3::UnitZ()), {0, 0, -.01 * std::sqrt(3.0)}};
     return {"block on a cube's corner", boxMesh({-.01, -.01, 0}, {.01, .01, .004}),
             placed(boxMesh({-.01, -.01, -.01}, {.01, .01, .01}), up),
             RandomPath({Quat::Identity(), {0, 0, .0005}}, {0, 0, -.003}, {.006, .006, .002}, 0.2, seed)};

@@ -34,9 +34,8 @@ std::optional<int> checkQuestionnaire(const std::string& path) {
 int check(const CheckArguments& options) {
     if (const auto code = checkQuestionnaire(options.protocol)) return *code;
     ProgressLine progress;
-    progress.show("reading " + options.protocol);  // of large meshes some seconds
-    auto [plan, errors, for_people] = run::examineProtocol(options.protocol, options.import_limits);
-    progress.show("");
+    auto [plan, errors, for_people] = progress.whileReading(
+        options.protocol, [&] { return run::examineProtocol(options.protocol, options.import_limits); });
     for (const Errors& more : {run::beyondBorder(plan, run::knownDevices()), for_people})
         errors.insert(errors.end(), more.begin(), more.end());
     if (!errors.empty()) return fail(errors);

@@ -51,6 +51,14 @@ public:
     ProgressLine();
     ~ProgressLine();  // leaves an empty line
     void show(const std::string& text);
+    /// What `read` returns; until then the line says which file is read, of large meshes for some seconds.
+    template <class Read>
+    auto whileReading(const std::string& file, const Read& read) {
+        show("reading " + file);
+        auto found = read();
+        show("");
+        return found;
+    }
 
 private:
     bool terminal_;

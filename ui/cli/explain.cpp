@@ -168,9 +168,8 @@ int explain(const ExplainArguments& options) {
             return fail({{"a scene has no orders: --orders is for study files", options.file}});
         const auto text = readFile(options.file);
         if (!text) return fail(text.errors());
-        progress.show("reading " + options.file);
-        const auto spec = run::readSceneOnDevice(*text, options.file, options.import_limits);
-        progress.show("");
+        const auto spec = progress.whileReading(
+            options.file, [&] { return run::readSceneOnDevice(*text, options.file, options.import_limits); });
         if (!spec) return fail(spec.errors());
         warn(options.file, spec->warnings);
         const auto done = printStages(spec->scene, cache, progress);
@@ -181,9 +180,8 @@ int explain(const ExplainArguments& options) {
         }
         return done ? 0 : fail(done.errors());
     }
-    progress.show("reading " + options.file);
-    const auto draft = run::readProtocol(options.file, options.import_limits);
-    progress.show("");
+    const auto draft =
+        progress.whileReading(options.file, [&] { return run::readProtocol(options.file, options.import_limits); });
     if (!draft) return fail(draft.errors());
     const int participants = options.participants > 0 ? options.participants : draft->participants;
     if (options.orders == "csv") {

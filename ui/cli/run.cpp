@@ -182,9 +182,8 @@ int tell(const std::string& study, run::RunOptions what, int acknowledge_fd, con
 
 int run(const RunArguments& options) {
     ProgressLine progress;
-    progress.show("reading " + options.protocol);
-    auto plan = run::readProtocol(options.protocol, options.import_limits);
-    progress.show("");
+    auto plan = progress.whileReading(options.protocol,
+                                      [&] { return run::readProtocol(options.protocol, options.import_limits); });
     if (!plan) {
         if (!options.database.empty()) logOf(options.database).fail("protocol refused", plan.errors());
         return fail(plan.errors());

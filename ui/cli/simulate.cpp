@@ -54,9 +54,8 @@ int simulate(const SimulateArguments& options) {
     const auto source = readFile(options.scene);
     if (!source) return fail(source.errors());
     ProgressLine progress;
-    progress.show("reading " + options.scene);
-    auto read = run::readSceneOnDevice(*source, options.scene, options.import_limits);
-    progress.show("");
+    auto read = progress.whileReading(
+        options.scene, [&] { return run::readSceneOnDevice(*source, options.scene, options.import_limits); });
     if (!read) return fail(read.errors());
     warn(options.scene, read->warnings);
     scene::SceneSpec* spec = &read->scene;

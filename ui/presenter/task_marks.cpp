@@ -23,7 +23,7 @@ geometry::TriangleMesh lineThrough(const std::vector<Vec3>& points, double radiu
         const Vec3 way = points[i] - points[i - 1];
         if (!(way.norm() > 0.0)) continue;
         append(mesh, shape::tessellate(shape::Cylinder{2.0 * radius, way.norm()}, coarse),
-               {Quat::FromTwoVectors(Vec3::UnitZ(), way), 0.5 * (points[i - 1] + points[i])});
+               {rotationBetween(Vec3::UnitZ(), way), 0.5 * (points[i - 1] + points[i])});
     }
     return mesh;
 }

@@ -58,7 +58,7 @@ void SceneModel::show(const presenter::DrawnScene& scene) {
     ground_position_ = millimetres({camera.centre.x(), camera.centre.y(), scene.floor});
     camera_position_ = millimetres(camera.X_WC.p);
     camera_rotation_ = rotation(camera.X_WC.q);
-    light_rotation_ = rotation(Quat::FromTwoVectors(Vec3::UnitZ(), scene.light_from));
+    light_rotation_ = rotation(rotationBetween(Vec3::UnitZ(), scene.light_from));
     camera_opening_ = kDegrees * camera.opening;
     camera_near_ = 1e3 * camera.near;
     camera_far_ = 1e3 * camera.far;
@@ -79,7 +79,7 @@ double SceneModel::arrowLength() const { return 1e3 * view_.arrow_way.norm(); }
 
 QQuaternion SceneModel::arrowRotation() const {
     if (!view_.arrow) return {};
-    return rotation(Quat::FromTwoVectors(Vec3::UnitY(), view_.arrow_way));
+    return rotation(rotationBetween(Vec3::UnitY(), view_.arrow_way));
 }
 
 }  // namespace passung::window

@@ -163,7 +163,7 @@ TEST(DeepestPoint, FindsACornerThatPiercesAFace) {
     // Truth: closed form (a cube stands on its corner, which is 1 mm deep; every triangle's centre is outside)
     const ExactMesh block = meshOf(shape::Box{0.1, 0.1, 0.1});
     const ExactMesh cube = meshOf(shape::Box{0.02, 0.02, 0.02});
-    const Quat on_corner = Quat::FromTwoVectors(Vec3(1, 1, 1), Vec3(0, 0, -1));
+    const Quat on_corner = rotationBetween(Vec3(1, 1, 1), Vec3(0, 0, -1));
     const double half_diagonal = 0.01 * std::sqrt(3.0);
     const Pose X_FS{on_corner, Vec3(0.003, 0.001, 0.05 + half_diagonal - 1e-3)};
     const DeepestPoint deepest = deepestPoint(block, cube, X_FS, 1e-6);

@@ -50,7 +50,7 @@ TEST(ExactOverlap, OfTwoBallsIsWhatTheirRadiiLackOfTheirDistance) {
 TEST(ExactOverlap, OfACubesCornerInAFaceIsHowFarItReachesBeyond) {
     // Truth: closed form. A cube of edge a on its corner: that lies a √3 / 2 below its middle.
     const shape::Shape cube = shape::Box{10 * mm, 10 * mm, 10 * mm}, block = shape::Box{40 * mm, 40 * mm, 20 * mm};
-    const Quat on_corner = Quat::FromTwoVectors(Vec3(1, 1, 1).normalized(), Vec3(0, 0, -1));
+    const Quat on_corner = rotationBetween(Vec3(1, 1, 1).normalized(), Vec3(0, 0, -1));
     for (const double depth : {1 * um, 648 * um, 2 * mm}) {
         const Pose X{on_corner, Vec3(1 * mm, 2 * mm, 10 * mm + 5 * std::sqrt(3.0) * mm - depth)};
         expectDepth(overlapOf(OverlapBody(block, kChord), Pose{}, OverlapBody(cube, kChord), X), depth, kChord,

@@ -143,13 +143,13 @@ void lowerOnto(const char* what, const Quat& upright, const Vec3& sharp, double 
 
 TEST(ObstacleEdge, ABoxCornerUnderAFlatFaceHidesNoMoreThanTheCoverRadiusAllows) {
     // Truth: independent dense geometry (branch and bound over both surfaces) and closed form of the box at the samples
-    const Quat upright = Quat::FromTwoVectors(Vec3(1, 1, 1), Vec3::UnitZ());
+    const Quat upright = rotationBetween(Vec3(1, 1, 1), Vec3::UnitZ());
     lowerOnto("corner of a box", upright, Vec3(0.01, 0.01, 0.01), std::asin(1.0 / std::sqrt(3.0)), 0.1e-3);
 }
 
 TEST(ObstacleEdge, ABoxEdgeUnderAFlatFaceHidesNoMoreThanTheCoverRadiusAllows) {
     // Truth: independent dense geometry (branch and bound over both surfaces) and closed form of the box at the samples
-    const Quat upright = Quat::FromTwoVectors(Vec3(1, 0, 1), Vec3::UnitZ());
+    const Quat upright = rotationBetween(Vec3(1, 0, 1), Vec3::UnitZ());
     lowerOnto("edge of a box", upright, Vec3(0.01, 0.0, 0.01), std::numbers::pi / 4, 0.05e-3);
 }
 

@@ -106,7 +106,7 @@ TEST(EdgeSearch, FindsTheLowestPlaceOfARimBetweenItsSamples) {
 TEST(EdgeSearch, LeavesCornersToTheSamples) {
     // Truth: closed form. The beam stands on its corner, 50 um deep in the block's face: along none of the three edges
     // that meet there is a place lower than the corner, which is a sample.
-    const Quat q = Quat::FromTwoVectors(Vec3(-2, -1, -1), -Vec3::UnitZ());
+    const Quat q = rotationBetween(Vec3(-2, -1, -1), -Vec3::UnitZ());
     const double low = (q * Vec3(-2, -1, -1) * kHalf).norm();
     ContactManifold manifold(1000);
     const QueryRequest near{.collect_below = 20e-6, .search_below = 20e-6};

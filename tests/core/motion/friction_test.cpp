@@ -439,6 +439,43 @@ TEST(Friction, BeginsWithTheFrictionBeforeAndEndsWhereItEndsWithout) {
     EXPECT_LT(warm_sweeps, cold_sweeps);
 }
 
+TEST(Friction, IsRelaxedWhereTwoWallsThatRubLeaveNoWayOut) {
+    // Truth: invariant. Between walls without play, against which the hand turns, an overlap with the floor is left
+    // along them alone; what slips along a wall rises from it, which the other one forbids. Without friction the
+    // overlap is left; with it, nothing sinks.
+    constexpr double kDeep = 1e-5, kRounding = 1e-12, kHigh = 0.01;
+    std::vector<ContactPoint> contacts{contactAt({0, 0, -kHigh}, Vec3::UnitZ())};
+    contacts[0].phi -= kDeep;
+    for (const double z : {-kHigh, kHigh}) {
+        contacts.push_back(contactAt({-0.01, 0, z}, Vec3::UnitX()));
+        contacts.push_back(contactAt({0.01, 0, z}, -Vec3::UnitX()));
+    }
+    const auto manifold = manifoldOf(contacts);
+    const Motion wanted = motion({0, 0, -1e-4}, {0, 1e-2, 0});
+    const auto smooth = motion::constrainMotion(wanted, {manifold, Vec3::Zero(), kRho, kKeepOut});
+    EXPECT_FALSE(smooth.relaxed);
+    EXPECT_NEAR(smooth.u.z(), kDeep, kRounding);
+    const FrictionMotion rubbed = rub(wanted, manifold);
+    EXPECT_TRUE(rubbed.motion.relaxed);
+    EXPECT_GE(rubbed.motion.u.z(), -kRounding);
+    EXPECT_NEAR(rubbed.motion.u.x(), 0.0, kRounding);
+    std::printf("rises by %.3g of %.3g um\n", 1e6 * rubbed.motion.u.z(), 1e6 * kDeep);
+}
+
+TEST(Friction, AContactThatSaysNoWayOutBearsNothing) {
+    // Truth: invariant: the same motion without it. A gradient of zero has no normal that anything could rub along.
+    auto contacts = disc(0.01, 2e-3);
+    const Motion wanted = motion({1e-4, 0, -1e-4}, {0, 0, 1e-3});
+    const FrictionMotion without = rub(wanted, manifoldOf(contacts));
+    ContactPoint none = contactAt({0.005, 0, 0}, Vec3::UnitX());
+    none.gradient = Vec3::Zero();
+    none.phi -= 1e-5;
+    contacts.push_back(none);
+    const FrictionMotion with = rub(wanted, manifoldOf(contacts));
+    EXPECT_TRUE(with.converged);
+    EXPECT_EQ(with.motion.u, without.motion.u);
+}
+
 TEST(Friction, WithoutFrictionIsTheConstrainedMotion) {
     // Truth: regression against constrainMotion, which has truths of its own.
     Random random(9);

@@ -135,7 +135,11 @@ public:
     void betweenSteps(session::Session& session) override {
         moment_.in_trial = false;
         bring();
-        desk_.bring({session.view()}, {});
+        // As a live session tells it: only what is new.
+        if (auto view = session.view(); view != told_) {
+            desk_.bring({view}, {});
+            told_ = std::move(view);
+        }
         if (session.state() != session::SessionState::InTrial || !moment_.tick) return;
         if (moment_.condition->timed_by != plan::TimedBy::Program) return;
         moment_.in_trial = desk_.run().view().is<state::Running>() && isTask();
@@ -174,6 +178,7 @@ private:
     loop::ScreenRing screen_{4096};
     std::vector<loop::ScreenRing*> screens_{&screen_};
     Moment moment_;
+    std::optional<session::SessionView> told_;
     std::array<bool, 3> seen_{};
 };
 
@@ -270,16 +275,18 @@ protected:
                       const std::string& what) {
         const auto count = moment_parts();
         std::vector<int> drawn(count), expected(count), both(count);
+        std::vector<double> hues(count);
+        for (std::size_t i = 0; i < count; ++i) hues[i] = identity(static_cast<int>(i)).hsvHueF();
         for (int y = 0; y < flat.height(); ++y)
             for (int x = 0; x < flat.width(); ++x) {
                 if (isCovered(over, x, y)) continue;
                 const QColor colour = flat.pixelColor(x, y);
                 int part = -1;
-                if (colour.value() > 100 && colour.hsvSaturation() > 100)
-                    for (int i = 0; i < static_cast<int>(count); ++i)
-                        if (part < 0 || hueDistance(colour.hsvHueF(), identity(i).hsvHueF()) <
-                                            hueDistance(colour.hsvHueF(), identity(part).hsvHueF()))
-                            part = i;
+                if (colour.value() > 100 && colour.hsvSaturation() > 100) {
+                    const double hue = colour.hsvHueF();
+                    const auto nearer = [hue](double a, double b) { return hueDistance(hue, a) < hueDistance(hue, b); };
+                    part = static_cast<int>(std::min_element(hues.begin(), hues.end(), nearer) - hues.begin());
+                }
                 const int truth = seen.at(x, y);
                 if (part >= 0) ++drawn[static_cast<std::size_t>(part)];
                 if (truth >= 0) ++expected[static_cast<std::size_t>(truth)];
