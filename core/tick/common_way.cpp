@@ -20,29 +20,48 @@ struct Going {
     double turn, way;  // [rad], [m]
 };
 
+/// The ways of the held part to `X_WG` and of the part in another hand that is number `k` of those that move, seen as
+/// points of the held part go: those of the other part are near them where they could meet.
+struct CommonWay {
+    CommonWay(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WG, std::size_t k) noexcept
+        : last(obstacles.X_WO_last[k]),
+          now(obstacles.X_WO[model.moving[k]]),
+          carried(now * last.inverse() * obstacles.X_WG_last),
+          own(obstacles.X_WG_last, X_WG, model.reach),
+          other(obstacles.X_WG_last, carried, model.reach),
+          relative(carried, X_WG, model.reach) {
+        const double apart =
+            (now.p - X_WG.p).norm() - model.reach - model.bodies[model.obstacles[model.moving[k]].body].reach;
+        far = apart > own.way + other.way;
+    }
+
+    /// The least of the three ways; 0 where the parts cannot have met [m].
+    double least() const noexcept { return far ? 0.0 : std::min({own.way, other.way, relative.way}); }
+    /// What a turn of one does to the way of the other: half their product, between the ends [m].
+    double bent() const noexcept { return std::min(kMostBent, 0.5 * (own.turn + other.turn) * (own.way + other.way)); }
+
+    const Pose &last, &now;  // of the other part
+    Pose carried;            // where the held part would be if it had gone with the other
+    Going own, other, relative;
+    bool far = false;
+};
+
 /// True if the held part meets a part of another hand on their common way; `meets(i, X_WO, X_WG, most)` says whether
 /// it does by more than `most` at two poses.
 template <class Meets>
 bool crosses(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WG, double accepted,
              Meets meets) noexcept {
-    const Pose& X_WG_last = obstacles.X_WG_last;
     for (std::size_t k = 0; k < model.moving.size(); ++k) {
-        const std::uint32_t i = model.moving[k];
-        const Pose &last = obstacles.X_WO_last[k], &now = obstacles.X_WO[i];
-        if (now.p == last.p && now.q.coeffs() == last.q.coeffs()) continue;
-        // Both as points of the held part go, since those of the other part are near them where they could meet.
-        const Pose carried = now * last.inverse();
-        const Going own(X_WG_last, X_WG, model.reach), other(X_WG_last, carried * X_WG_last, model.reach);
-        const Going relative(carried * X_WG_last, X_WG, model.reach);
-        // What a turn of one does to the way of the other: half their product, between the ends.
-        const double bent = std::min(kMostBent, 0.5 * (own.turn + other.turn) * (own.way + other.way));
-        const double most = accepted + bent;
-        if (std::min({own.way, other.way, relative.way}) <= most) continue;
-        const double pieces = std::ceil(relative.way / kLongestPiece) + 1.0;
+        const CommonWay way(model, obstacles, X_WG, k);
+        const double most = accepted + way.bent();
+        if (way.least() <= most) continue;
+        const double pieces = std::ceil(way.relative.way / kLongestPiece) + 1.0;
         if (pieces > kMostPieces) return true;
         for (int piece = 1; piece < static_cast<int>(pieces); ++piece) {
             const double share = piece / pieces;
-            if (meets(i, between(last, now, share), between(X_WG_last, X_WG, share), most)) return true;
+            if (meets(model.moving[k], between(way.last, way.now, share), between(obstacles.X_WG_last, X_WG, share),
+                      most))
+                return true;
         }
     }
     return false;

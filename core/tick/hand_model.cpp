@@ -27,16 +27,14 @@ ProxyMargins marginsOf(const HandModel& model) {
 
 /// What the held part is to contact.
 void addHeld(HandModel& model, const Body& held) {
+    model.reach = held.reach;
     if (held.solid) {
         model.held_solid = &*held.solid;
-        model.reach = closed_form::reachOf(*model.held_solid);
     } else if (held.surface != nullptr) {
         model.held_surface = held.surface;
-        model.reach = model.held_surface->reach();
     } else {
         model.shell = held.shell;
         model.edges = held.edges;
-        model.reach = model.shell->reach();
         if (model.contact.two_way) model.held_field = held.field;
     }
 }

@@ -10,12 +10,15 @@ Body bodyOf(const scene::Scene& scene, std::size_t i, scene::Geometry geometry) 
     Body body{.X_WP_start = spec.X_WP, .held = spec.held};
     if (geometry == scene::Geometry::ClosedForm) {
         body.solid = *closed_form::solidOf(*part.shape);
+        body.reach = closed_form::reachOf(*body.solid);
     } else if (geometry == scene::Geometry::Surface) {
         body.surface = part.clusters.get();
+        body.reach = body.surface->reach();
     } else {
         body.field = part.field.get();
         body.shell = part.shell ? &*part.shell : nullptr;
         body.edges = part.edges.get();
+        if (body.shell != nullptr) body.reach = body.shell->reach();
     }
     return body;
 }

@@ -15,8 +15,9 @@ namespace passung::tick {
 
 /// A part of the scene, as what contact with it is computed from. Borrows the scene's.
 struct Body {
-    Pose X_WP_start;    // part to world, where a trial begins
-    bool held = false;  // by a hand: it moves
+    Pose X_WP_start;     // part to world, where a trial begins
+    bool held = false;   // by a hand: it moves
+    double reach = 0.0;  // no point is farther from its origin [m]; of held ones
     // Geometry::Field only, as far as anybody asks for it
     const field::DistanceField* field = nullptr;
     const shell::SphereTree* shell = nullptr;
