@@ -57,7 +57,7 @@ ClosedFormMemory closedFormMemory(const HandModel& model) {
     return memory;
 }
 
-void followInClosedForm(const HandModel& model, const HandSample& hand, const Pull& pull,
+void followInClosedForm(const HandModel& model, const HandSample& hand, const HeldTarget& target,
                         const ObstaclePoses& obstacles, Proxy& proxy, ClosedFormHold& held, ClosedFormMemory& memory,
                         Pushes& pushes, Report& report) noexcept {
     for (const std::uint32_t i : model.moving) {
@@ -69,7 +69,7 @@ void followInClosedForm(const HandModel& model, const HandSample& hand, const Pu
         held.hold = {};
     }
     const closed_form::ConstrainedPose found =
-        memory.solver.solve(proxy.X_WG, pull.X_WT, held.hold, mostLooks(model, memory));
+        memory.solver.solve(proxy.X_WG, target.X_WT, held.hold, mostLooks(model, memory));
     proxy.X_WG = found.X_WG;
     proxy.clearance = -found.overlap;
     note(found, report);
@@ -94,10 +94,10 @@ void filterInClosedForm(const HandModel& model, const HandSample& hand, const Cl
     filter.has_last_proxy = true;
 }
 
-void describeClosedForm(const HandModel&, const Pull& pull, const Proxy& proxy, const ClosedFormHold& held,
+void describeClosedForm(const HandModel&, const HeldTarget& target, const Proxy& proxy, const ClosedFormHold& held,
                         ContactRecord& record) noexcept {
     record.proxy_depth = overlap(proxy);
-    record.contacts = std::max(pull.contacts_of_hands, static_cast<std::uint32_t>(held.hold.count));
+    record.contacts = std::max(target.contacts_of_hands, static_cast<std::uint32_t>(held.hold.count));
 }
 
 void measureClosedFormDepth(const HandModel&, const HandSample& hand, ClosedFormMemory& memory, HandDepth& depth,

@@ -51,7 +51,7 @@ struct ClosedFormMemory {
 ClosedFormMemory closedFormMemory(const HandModel& model);
 
 /// Stages, in this order. rt-safe.
-void followInClosedForm(const HandModel& model, const HandSample& hand, const Pull& pull,
+void followInClosedForm(const HandModel& model, const HandSample& hand, const HeldTarget& target,
                         const ObstaclePoses& obstacles, Proxy& proxy, ClosedFormHold& held, ClosedFormMemory& memory,
                         Pushes& pushes, Report& report) noexcept;
 inline constexpr StageOf kClosedFormProxy{
@@ -82,8 +82,8 @@ inline constexpr StageOf kClosedFormFilter{
      .reason = [](const HandModel&) { return "contact.proxy_filter_hz is set: a low-pass of the proxy in contact"; }}};
 
 /// Overlap, and the contacts that hold the proxy.
-void describeClosedForm(const HandModel& model, const Pull& pull, const Proxy& proxy, const ClosedFormHold& held,
-                        ContactRecord& record) noexcept;
+void describeClosedForm(const HandModel& model, const HeldTarget& target, const Proxy& proxy,
+                        const ClosedFormHold& held, ContactRecord& record) noexcept;
 inline constexpr StageOf kClosedFormRecord{
     describeClosedForm,
     {.name = "closed-form record",

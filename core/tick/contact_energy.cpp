@@ -57,9 +57,9 @@ void sharePushes(const HandModel&, const HandSample& hand, const HandWrench& wre
     }
 }
 
-void addHeldPushes(const HandModel&, const Pull& pull, Pushes& pushes) noexcept {
-    for (std::size_t i = 0; i < pull.from_hands.size(); ++i)
-        add(pushes.pushes[i], pull.from_hands[i].wrench, pull.from_hands[i].pressure);
+void addHeldPushes(const HandModel&, const HeldTarget& target, Pushes& pushes) noexcept {
+    for (std::size_t i = 0; i < target.from_hands.size(); ++i)
+        add(pushes.pushes[i], target.from_hands[i].wrench, target.from_hands[i].pressure);
 }
 
 void bookPairs(EnergyAccounts& accounts, const Vec3& moved, const Vec3& turned, int ticks) noexcept {

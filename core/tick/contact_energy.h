@@ -41,8 +41,8 @@ inline constexpr StageOf kContactShares{
      .needs = [](const HandModel& model) { return model.hasObstacles(); },
      .reason = [](const HandModel&) { return "always: the energy account is kept for each obstacle too"; }}};
 
-/// Stage, of hands with a proxy beside other hands: what their parts push the held part with (held_contacts.h).
-void addHeldPushes(const HandModel& model, const Pull& pull, Pushes& pushes) noexcept;
+/// Stage, of hands with a proxy beside other hands: what their parts push the held part with (hand_balance.h).
+void addHeldPushes(const HandModel& model, const HeldTarget& target, Pushes& pushes) noexcept;
 inline constexpr StageOf kHeldPushes{
     addHeldPushes,
     {.name = "pushes between hands",

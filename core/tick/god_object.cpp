@@ -102,9 +102,10 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
 
 }  // namespace
 
-void sweepProxy(const HandModel& model, const HandSample& hand, const Pull& pull, const ObstaclePoses& obstacles,
-                Proxy& proxy, ProxyMotion& motion, QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
-    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, pull.X_WT, motion, pushes};
+void sweepProxy(const HandModel& model, const HandSample& hand, const HeldTarget& target,
+                const ObstaclePoses& obstacles, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory, Pushes& pushes,
+                Report& report) noexcept {
+    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, target.X_WT, motion, pushes};
     if (!startProxy(moving)) {
         report.status |= kSuspended | kIterationLimit;
         noteLag(moving, false);
@@ -122,7 +123,7 @@ void sweepProxy(const HandModel& model, const HandSample& hand, const Pull& pull
     bool arrived = false, whole = false;  // whole: the last step was all that was allowed
     bool suspended = false;
     for (int sweep = 0; sweep <= kSweeps; ++sweep) {
-        const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, pull.X_WT);
+        const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, target.X_WT);
         const double path = longestPath(model, wanted);
         const double before = overlap(proxy);
         const bool goes_on = proxy.step.look.open;  // with what an earlier tick began
@@ -134,7 +135,7 @@ void sweepProxy(const HandModel& model, const HandSample& hand, const Pull& pull
             if (!way.goesOn(model, wanted, path)) break;
             const bool bent = way.bentBy(wanted) > margins.relieve;
             suspended = !budget.allows(bent ? 1 + kLooksBetween : 1);
-            if (suspended || (bent && cutsCorner(moving, X_before, pull.X_WT, between))) break;
+            if (suspended || (bent && cutsCorner(moving, X_before, target.X_WT, between))) break;
             report.iterations = static_cast<std::uint32_t>(sweep + 1);
             budget.begin();
             arrived = arriveFreely(moving, path, reach, accepted);

@@ -69,8 +69,9 @@ inline constexpr int kSweeps = 16;
 inline constexpr int kCuts = 4;  // of one step
 
 /// Stage; those of proxy.h follow. rt-safe.
-void sweepProxy(const HandModel& model, const HandSample& hand, const Pull& pull, const ObstaclePoses& obstacles,
-                Proxy& proxy, ProxyMotion& motion, QueryMemory& memory, Pushes& pushes, Report& report) noexcept;
+void sweepProxy(const HandModel& model, const HandSample& hand, const HeldTarget& target,
+                const ObstaclePoses& obstacles, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory, Pushes& pushes,
+                Report& report) noexcept;
 inline constexpr StageOf kProxySweep{
     sweepProxy,
     {.name = "proxy sweep",

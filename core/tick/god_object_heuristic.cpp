@@ -70,9 +70,10 @@ void relieve(const ProxyView& view, double reach, double left, LookBudget& budge
 
 }  // namespace
 
-void correctProxy(const HandModel& model, const HandSample& hand, const Pull& pull, const ObstaclePoses& obstacles,
-                  Proxy& proxy, ProxyMotion& motion, QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
-    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, pull.X_WT, motion, pushes};
+void correctProxy(const HandModel& model, const HandSample& hand, const HeldTarget& target,
+                  const ObstaclePoses& obstacles, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
+                  Pushes& pushes, Report& report) noexcept {
+    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, target.X_WT, motion, pushes};
     if (!startProxy(moving)) return;
     const double left = leftOf(model, overlap(proxy));
     for (int i = 0; i < kCorrections && overlap(proxy) > std::max(model.margins.accept, left); ++i) {
@@ -92,9 +93,9 @@ void correctProxy(const HandModel& model, const HandSample& hand, const Pull& pu
     }
 }
 
-void moveProxy(const HandModel& model, const HandSample& hand, const Pull& pull, const ObstaclePoses& obstacles,
+void moveProxy(const HandModel& model, const HandSample& hand, const HeldTarget& target, const ObstaclePoses& obstacles,
                Proxy& proxy, ProxyMotion& motion, QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
-    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, pull.X_WT, motion, pushes};
+    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, target.X_WT, motion, pushes};
     const double s = model.finest_cell;
     const Pose X_before = proxy.X_WG;
     const double left = leftOf(model, overlap(proxy));
@@ -104,7 +105,7 @@ void moveProxy(const HandModel& model, const HandSample& hand, const Pull& pull,
     LookBudget budget(model, report);
     bool arrived = false, suspended = false;
     for (int sub_step = 0; sub_step < kSubSteps; ++sub_step) {
-        const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, pull.X_WT);
+        const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, target.X_WT);
         const double path = longestPath(model, wanted);
         arrived = path < kStill;
         if (arrived) break;
@@ -117,7 +118,7 @@ void moveProxy(const HandModel& model, const HandSample& hand, const Pull& pull,
             if (!way.goesOn(model, wanted, path)) break;
             const bool bent = way.bentBy(wanted) > model.margins.relieve;
             suspended = bent && !budget.allows(1 + kLooksBetween);
-            if (suspended || (bent && cutsCorner(moving, X_before, pull.X_WT, between))) break;
+            if (suspended || (bent && cutsCorner(moving, X_before, target.X_WT, between))) break;
         }
         // Nothing in the way: arrive.
         budget.begin();
@@ -158,7 +159,7 @@ void moveProxy(const HandModel& model, const HandSample& hand, const Pull& pull,
             good = !bent || (!suspended && !cutsCorner(moving, X_before, proxy.X_WG, between));
         }
         arrived = good && whole;  // the whole constrained motion was made
-        if (good) noteFollowed(proxy, pull.X_WT, std::min(1.0, known / step_path) * std::ldexp(1.0, -half));
+        if (good) noteFollowed(proxy, target.X_WT, std::min(1.0, known / step_path) * std::ldexp(1.0, -half));
         if (!good) queryAround(moving, X_here, next_reach, next_reach);
         if (suspended) proxy.tried = half;
         if (!good || whole) break;

@@ -62,8 +62,9 @@ inline constexpr int kSubSteps = 12;
 inline constexpr int kCorrections = 3;
 
 /// Stages, in this order; those of proxy.h follow. First #1, #2.
-void correctProxy(const HandModel& model, const HandSample& hand, const Pull& pull, const ObstaclePoses& obstacles,
-                  Proxy& proxy, ProxyMotion& motion, QueryMemory& memory, Pushes& pushes, Report& report) noexcept;
+void correctProxy(const HandModel& model, const HandSample& hand, const HeldTarget& target,
+                  const ObstaclePoses& obstacles, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
+                  Pushes& pushes, Report& report) noexcept;
 inline constexpr StageOf kProxyCorrection{
     correctProxy,
     {.name = "proxy correction",
@@ -84,7 +85,7 @@ inline constexpr StageOf kProxyCorrection{
          }}};
 
 /// #3, #4.
-void moveProxy(const HandModel& model, const HandSample& hand, const Pull& pull, const ObstaclePoses& obstacles,
+void moveProxy(const HandModel& model, const HandSample& hand, const HeldTarget& target, const ObstaclePoses& obstacles,
                Proxy& proxy, ProxyMotion& motion, QueryMemory& memory, Pushes& pushes, Report& report) noexcept;
 inline constexpr StageOf kProxyMotion{
     moveProxy,

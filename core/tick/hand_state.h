@@ -45,9 +45,9 @@ using AllStages = StageList<kInputGuard, kEnergyAccount, kStartGate,            
 
 /// Everything of a hand that a tick carries to the next: the stages' own states. Sized by makeHandState; a tick never
 /// allocates.
-struct HandState : Parts<ObstaclePoses, Pull, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion, ProxyFilter,
-                         ClosedFormHold, FilteredHold, ClosedFormMemory, SurfaceFollow, HandVelocity, ToolMotion,
-                         Stretch, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
+struct HandState : Parts<ObstaclePoses, HeldTarget, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion,
+                         ProxyFilter, ClosedFormHold, FilteredHold, ClosedFormMemory, SurfaceFollow, HandVelocity,
+                         ToolMotion, Stretch, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
 
 /// The state before the first tick, with all memory that the ticks will need.
 HandState makeHandState(const HandModel& model);

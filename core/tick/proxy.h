@@ -41,7 +41,7 @@ struct ProxyView {
 /// What they move it by, towards the hand.
 struct MovingProxy : ProxyView {
     const HandSample& hand;
-    const Pose& X_WT;  // Pull
+    const Pose& X_WT;  // HeldTarget
     ProxyMotion& motion;
     Pushes& pushes;
 };

@@ -23,8 +23,8 @@ struct ObstaclePoses {
 };
 
 /// Where the held part is asked to go, and what pushes it there beside its hand: the hand's pose and nothing, but where
-/// it touches a part in another hand (held_contacts.h). Nobody writes it but step(), before the stages that follow it.
-struct Pull {
+/// it touches a part in another hand (hand_balance.h). Nobody writes it but step(), before the stages that follow it.
+struct HeldTarget {
     static constexpr bool kOnlyRead = true;
     Pose X_WT;
     std::vector<ObstaclePush> from_hands;  // of each obstacle, as Pushes; empty where no other hand is

@@ -110,8 +110,7 @@ void step(const TickModel& model, TickState& state, std::span<const DeviceReadin
         X_WH[i] = outputs[i].frame.X_WH;
     }
     const std::size_t first = static_cast<std::size_t>(state.tick) % count;
-    const Turns turns =
-        balanceHands(model.hands, state.hands, std::span(X_WH).first(count), first, state.held_contacts);
+    const Turns turns = balanceHands(model.hands, state.hands, std::span(X_WH).first(count), first, state.balance);
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t hand = turns[i];
         takeTurn(model.hands[hand], state, state.hands[hand], next[hand], outputs[hand], watch);

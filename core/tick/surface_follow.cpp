@@ -53,14 +53,15 @@ SurfaceFollow surfaceFollow(const HandModel& model) {
     return follow;
 }
 
-void followOnSurface(const HandModel& model, const HandSample& hand, const Pull& pull, const ObstaclePoses& obstacles,
-                     Proxy& proxy, SurfaceFollow& follow, Pushes& pushes, Report& report) noexcept {
+void followOnSurface(const HandModel& model, const HandSample& hand, const HeldTarget& target,
+                     const ObstaclePoses& obstacles, Proxy& proxy, SurfaceFollow& follow, Pushes& pushes,
+                     Report& report) noexcept {
     const std::size_t still = model.still_surface != nullptr ? 1 : 0;
     for (std::size_t k = 0; k < model.moving.size(); ++k)
         follow.surface->moveBody(still + k, obstacles.X_WO[model.moving[k]]);
     // A spring from the old place would throw the hand across the room.
     if (hand.relocated) follow.surface->place(hand.X_WH);
-    const surface::SurfaceTick& now = follow.surface->advance(pull.X_WT);
+    const surface::SurfaceTick& now = follow.surface->advance(target.X_WT);
     follow.gap = now.gap;
     follow.contacts = static_cast<std::uint32_t>(now.active);
     proxy.X_WG = now.X_WG;
@@ -74,10 +75,11 @@ void followOnSurface(const HandModel& model, const HandSample& hand, const Pull&
     noteRows(model, *follow.surface, pushes);
 }
 
-void describeSurface(const HandModel&, const Pull& pull, const SurfaceFollow& follow, ContactRecord& record) noexcept {
+void describeSurface(const HandModel&, const HeldTarget& target, const SurfaceFollow& follow,
+                     ContactRecord& record) noexcept {
     record.proxy_depth = 0.0;
     record.proxy_gap = follow.gap;
-    record.contacts = std::max(pull.contacts_of_hands, follow.contacts);
+    record.contacts = std::max(target.contacts_of_hands, follow.contacts);
 }
 
 void measureSurfaceDepth(const HandModel&, const HandSample& hand, const SurfaceFollow& follow,

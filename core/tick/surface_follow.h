@@ -38,8 +38,9 @@ std::size_t obstacleOf(const HandModel& model, const surface::SurfaceProxy& surf
 SurfaceFollow surfaceFollow(const HandModel& model);
 
 /// Stages, in this order. rt-safe.
-void followOnSurface(const HandModel& model, const HandSample& hand, const Pull& pull, const ObstaclePoses& obstacles,
-                     Proxy& proxy, SurfaceFollow& follow, Pushes& pushes, Report& report) noexcept;
+void followOnSurface(const HandModel& model, const HandSample& hand, const HeldTarget& target,
+                     const ObstaclePoses& obstacles, Proxy& proxy, SurfaceFollow& follow, Pushes& pushes,
+                     Report& report) noexcept;
 inline constexpr StageOf kSurfaceProxy{
     followOnSurface,
     {.name = "surface proxy",
@@ -56,7 +57,7 @@ inline constexpr StageOf kSurfaceProxy{
          }}};
 
 /// The proven gap, and the contacts that hold the proxy.
-void describeSurface(const HandModel& model, const Pull& pull, const SurfaceFollow& follow,
+void describeSurface(const HandModel& model, const HeldTarget& target, const SurfaceFollow& follow,
                      ContactRecord& record) noexcept;
 inline constexpr StageOf kSurfaceRecord{
     describeSurface,

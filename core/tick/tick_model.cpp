@@ -16,7 +16,7 @@ TickState makeState(const TickModel& model) {
     TickState state;
     for (const Body& body : model.world.bodies) state.X_WP.push_back(body.X_WP_start);
     for (const HandModel& hand : model.hands) state.hands.push_back(makeHandState(hand));
-    state.held_contacts = heldContacts(model.hands);
+    state.balance = balanceMemory(model.hands);
     return state;
 }
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/base/types.h"
+#include "core/tick/hand_balance.h"
 #include "core/tick/hand_state.h"
-#include "core/tick/held_contacts.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
@@ -16,7 +16,7 @@ struct TickState {
     std::uint64_t hash = 0xcbf29ce484222325u;  // of all outputs, exact bits
     std::vector<Pose> X_WP;                    // of every part; a held one's is its hand's proxy
     std::vector<HandState> hands;
-    HeldContacts held_contacts;
+    BalanceMemory balance;
 };
 
 /// The state before the first tick, with all memory that the ticks will need.

@@ -39,7 +39,7 @@ namespace passung::tick {
 /// each hand feels K d/2. A part pressed against one that lies on a wall → as against the wall.
 /// Invariant: the forces that parts in hands push each other with are equal and opposite.
 /// Without proxies (penalty, at the hand or by a tool) each hand feels the overlap itself: nothing is to be balanced.
-struct HeldContact {
+struct BalancedContact {
     motion::MotionRowOf<motion::kMostUnknowns> row;
     Vec3 point, normal;           // world
     std::size_t hand = 0;         // whose search found it
@@ -49,24 +49,24 @@ struct HeldContact {
 };
 
 /// Memory of the balance: it goes from no tick to the next.
-struct HeldContacts {
-    std::vector<HeldContact> contacts;  // kMostHeldContacts, or none where no balance is needed
+struct BalanceMemory {
+    std::vector<BalancedContact> contacts;  // kMostBalanceMemory, or none where no balance is needed
     std::size_t count = 0;
     bool full = false;
 };
-inline constexpr std::size_t kMostHeldContacts = 512;
+inline constexpr std::size_t kMostBalanceMemory = 512;
 
 struct HandState;
 
 /// The order of the hands' turns in a tick.
 using Turns = std::array<std::size_t, scene::kMostHands>;
 
-/// Sets each hand's Pull from where the hands are, and says in which order they go: `first` and those after it, but for
-/// who gives way. rt-safe.
+/// Sets each hand's HeldTarget from where the hands are, and says in which order they go: `first` and those after it,
+/// but for who gives way. rt-safe.
 Turns balanceHands(std::span<const HandModel> models, std::span<HandState> states, std::span<const Pose> X_WH,
-                   std::size_t first, HeldContacts& memory) noexcept;
+                   std::size_t first, BalanceMemory& memory) noexcept;
 
 /// Memory for the balance of these hands.
-HeldContacts heldContacts(std::span<const HandModel> models);
+BalanceMemory balanceMemory(std::span<const HandModel> models);
 
 }  // namespace passung::tick

@@ -1,4 +1,4 @@
-#include "core/tick/held_contacts.h"
+#include "core/tick/hand_balance.h"
 
 #include <algorithm>
 #include <array>
@@ -60,10 +60,10 @@ bool isBalanced(const HandModel& model, const HandState& state) noexcept {
 }
 
 /// Hands, and what lies between them.
-class Balance {
+class HandBalance {
 public:
-    Balance(std::span<const HandModel> models, std::span<const HandState> states, std::span<const Pose> X_WH,
-            HeldContacts& memory) noexcept
+    HandBalance(std::span<const HandModel> models, std::span<const HandState> states, std::span<const Pose> X_WH,
+                BalanceMemory& memory) noexcept
         : models_(models), states_(states), memory_(memory) {
         for (std::size_t h = 0; h < models.size(); ++h) {
             if (!isBalanced(models[h], states[h])) continue;
@@ -79,16 +79,16 @@ public:
     /// False: there is no balance, or nothing between two hands holds it.
     bool solve() noexcept {
         if (!attempt()) {
-            for (HeldContact& contact : contacts()) contact.row.bound = std::min(contact.row.bound, 0.0);
+            for (BalancedContact& contact : contacts()) contact.row.bound = std::min(contact.row.bound, 0.0);
             if (!attempt()) return false;
         }
         for (int i = 0; i < active_.size(); ++i)
-            if (contactOf(i).other != HeldContact::kNobody) return true;
+            if (contactOf(i).other != BalancedContact::kNobody) return true;
         return false;
     }
 
     int holding() const noexcept { return active_.size(); }
-    const HeldContact& contactOf(int i) const noexcept { return memory_.contacts[active_.row(i).contact]; }
+    const BalancedContact& contactOf(int i) const noexcept { return memory_.contacts[active_.row(i).contact]; }
     /// λ of the header [m].
     double pushOf(int i) const noexcept { return active_.lambda(i) / active_.row(i).length; }
     motion::Motion motionOf(std::size_t hand) const noexcept { return blockOf(u_, hand); }
@@ -98,7 +98,7 @@ public:
     }
 
 private:
-    std::span<HeldContact> contacts() noexcept { return std::span(memory_.contacts).first(memory_.count); }
+    std::span<BalancedContact> contacts() noexcept { return std::span(memory_.contacts).first(memory_.count); }
 
     double reachOf(std::size_t hand, const Motions& u) const noexcept {
         const motion::Motion own = blockOf(u, hand);
@@ -108,7 +108,7 @@ private:
     std::size_t holderOf(std::size_t body) const noexcept {
         for (std::size_t h = 0; h < models_.size(); ++h)
             if (models_[h].body == body && isBalanced(models_[h], states_[h])) return h;
-        return HeldContact::kNobody;
+        return BalancedContact::kNobody;
     }
 
     void collect() noexcept {
@@ -128,7 +128,7 @@ private:
         }
         const HandModel& model = models_[hand];
         const std::size_t body = model.obstacles[found.obstacle].body;
-        HeldContact& contact = memory_.contacts[memory_.count];
+        BalancedContact& contact = memory_.contacts[memory_.count];
         contact = {.row = {},
                    .point = found.point,
                    .normal = found.normal,
@@ -139,7 +139,7 @@ private:
         row.a.setZero();
         blockOf(row.a, hand) = leverOf(model, states_[hand], found.point, found.normal);
         double room = found.room;
-        if (contact.other != HeldContact::kNobody) {
+        if (contact.other != BalancedContact::kNobody) {
             const std::size_t other = contact.other;
             blockOf(row.a, other) = -leverOf(models_[other], states_[other], found.point, found.normal);
             // The obstacle may have had its turn since.
@@ -161,7 +161,7 @@ private:
         for (;;) {
             const Row* worst = nullptr;
             double most = kRowTolerance;
-            for (const HeldContact& contact : contacts()) {
+            for (const BalancedContact& contact : contacts()) {
                 const double violated = contact.row.bound - contact.row.a.dot(u_);
                 if (violated <= most) continue;
                 most = violated;
@@ -174,7 +174,7 @@ private:
 
     std::span<const HandModel> models_;
     std::span<const HandState> states_;
-    HeldContacts& memory_;
+    BalanceMemory& memory_;
     Motions wanted_ = Motions::Zero(), u_ = Motions::Zero();
     double way_ = 0.0;  // of all hands [m]
     bool between_ = false;
@@ -193,15 +193,15 @@ void push(const HandModel& model, HandState& state, std::size_t obstacle, const 
     ++state.contacts_of_hands;
 }
 
-void forget(Pull& pull) noexcept {
-    for (ObstaclePush& of : pull.from_hands) of = {};
-    pull.contacts_of_hands = 0;
+void forget(HeldTarget& target) noexcept {
+    for (ObstaclePush& of : target.from_hands) of = {};
+    target.contacts_of_hands = 0;
 }
 
 }  // namespace
 
 Turns balanceHands(std::span<const HandModel> models, std::span<HandState> states, std::span<const Pose> X_WH,
-                   std::size_t first, HeldContacts& memory) noexcept {
+                   std::size_t first, BalanceMemory& memory) noexcept {
     const std::size_t count = models.size();
     Turns turns{};
     for (std::size_t i = 0; i < count; ++i) {
@@ -210,15 +210,15 @@ Turns balanceHands(std::span<const HandModel> models, std::span<HandState> state
         forget(states[i]);
     }
     if (memory.contacts.empty()) return turns;
-    Balance balance(models, states, X_WH, memory);
+    HandBalance balance(models, states, X_WH, memory);
     if (!balance.hasAny() || !balance.solve()) return turns;
     std::array<double, scene::kMostHands> gives_way{};
     std::array<bool, scene::kMostHands> touched{};
     for (int i = 0; i < balance.holding(); ++i) {
-        const HeldContact& contact = balance.contactOf(i);
+        const BalancedContact& contact = balance.contactOf(i);
         const Vec3 along = balance.pushOf(i) * contact.normal;
         push(models[contact.hand], states[contact.hand], contact.obstacle, contact.point, along);
-        if (contact.other == HeldContact::kNobody) continue;
+        if (contact.other == BalancedContact::kNobody) continue;
         gives_way[contact.hand] += balance.givesWay(i, contact.hand);
         const std::size_t body = models[contact.hand].body, own = models[contact.other].body;
         push(models[contact.other], states[contact.other], body < own ? body : body - 1, contact.point, -along);
@@ -236,12 +236,12 @@ Turns balanceHands(std::span<const HandModel> models, std::span<HandState> state
     return turns;
 }
 
-HeldContacts heldContacts(std::span<const HandModel> models) {
-    HeldContacts memory;
+BalanceMemory balanceMemory(std::span<const HandModel> models) {
+    BalanceMemory memory;
     const bool any = std::any_of(models.begin(), models.end(), [](const HandModel& model) {
         return !model.moving.empty() && model.hasProxy() && model.contact.method != scene::ContactMethod::Penalty;
     });
-    if (any) memory.contacts.resize(kMostHeldContacts);
+    if (any) memory.contacts.resize(kMostBalanceMemory);
     return memory;
 }
 
