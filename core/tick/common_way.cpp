@@ -24,11 +24,11 @@ struct Going {
 /// points of the held part go: those of the other part are near them where they could meet.
 struct CommonWay {
     CommonWay(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WG, std::size_t k) noexcept
-        : last(obstacles.X_WO_last[k]),
+        : last(obstacles.X_WO_begin[k]),
           now(obstacles.X_WO[model.moving[k]]),
-          carried(now * last.inverse() * obstacles.X_WG_last),
-          own(obstacles.X_WG_last, X_WG, model.reach),
-          other(obstacles.X_WG_last, carried, model.reach),
+          carried(now * last.inverse() * obstacles.X_WG_begin),
+          own(obstacles.X_WG_begin, X_WG, model.reach),
+          other(obstacles.X_WG_begin, carried, model.reach),
           relative(carried, X_WG, model.reach) {
         const double apart =
             (now.p - X_WG.p).norm() - model.reach - model.bodies[model.obstacles[model.moving[k]].body].reach;
@@ -59,7 +59,7 @@ bool crosses(const HandModel& model, const ObstaclePoses& obstacles, const Pose&
         if (pieces > kMostPieces) return true;
         for (int piece = 1; piece < static_cast<int>(pieces); ++piece) {
             const double share = piece / pieces;
-            if (meets(model.moving[k], between(way.last, way.now, share), between(obstacles.X_WG_last, X_WG, share),
+            if (meets(model.moving[k], between(way.last, way.now, share), between(obstacles.X_WG_begin, X_WG, share),
                       most))
                 return true;
         }
@@ -77,7 +77,7 @@ void keepCommonWay(const HandModel& model, const ObstaclePoses& obstacles, Proxy
     };
     if (!crosses(model, obstacles, proxy.X_WG, accepted, meets)) return;
     report.status |= kSuspended;
-    surveyContacts({model, proxy, memory, report, obstacles}, obstacles.X_WG_last);
+    surveyContacts({model, proxy, memory, report, obstacles}, obstacles.X_WG_begin);
 }
 
 void keepCommonWayInClosedForm(const HandModel& model, const ObstaclePoses& obstacles, Proxy& proxy,
@@ -91,7 +91,7 @@ void keepCommonWayInClosedForm(const HandModel& model, const ObstaclePoses& obst
     for (const std::uint32_t i : model.moving) memory.at_hand[i].place(obstacles.X_WO[i]);
     if (!crossed) return;
     report.status |= kSuspended;
-    proxy.X_WG = obstacles.X_WG_last;
+    proxy.X_WG = obstacles.X_WG_begin;
 }
 
 }  // namespace passung::tick

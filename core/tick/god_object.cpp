@@ -118,7 +118,7 @@ void sweepProxy(const HandModel& model, const HandSample& hand, const HeldTarget
     double repair = kRepair * model.finest_cell;
     ProxyWay way(model);
     const double between = std::max(margins.relieve, overlap(proxy));
-    LookBudget budget(model, report);
+    LookBudget budget(target.work, report);
     const bool budgeted = model.hasNodeBudget();
     bool arrived = false, whole = false;  // whole: the last step was all that was allowed
     bool suspended = false;

@@ -102,7 +102,7 @@ void moveProxy(const HandModel& model, const HandSample& hand, const HeldTarget&
     double reach = nextReach(model, motion.last_motion);
     ProxyWay way(model);
     const double between = std::max(model.margins.relieve, overlap(proxy));
-    LookBudget budget(model, report);
+    LookBudget budget(target.work, report);
     bool arrived = false, suspended = false;
     for (int sub_step = 0; sub_step < kSubSteps; ++sub_step) {
         const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, target.X_WT);

@@ -113,7 +113,6 @@ HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size
     model.limits = device.limits;
     model.registration = device.registration;
     model.start_gate = device.start_gate;
-    model.hands = static_cast<int>(spec.handCount());
     model.effects = spec.effects;
     model.record_hand_depth = spec.record_hand_depth;
     model.display_wrench = spec.display_wrench;

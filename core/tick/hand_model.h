@@ -58,7 +58,6 @@ struct HandModel {
     double metric_radius = 0.0;  // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
     ProxyMargins margins;
     scene::Effects effects;
-    int hands = 1;  // that share the work of a tick
     bool record_hand_depth = true;
     bool display_wrench = true;
 

@@ -63,7 +63,7 @@ HandState makeHandState(const HandModel& model) {
     for (const Obstacle& obstacle : model.obstacles) state.X_WO.push_back(model.bodies[obstacle.body].X_WP_start);
     for (const std::uint32_t i : model.moving) {
         state.X_WO_known.push_back(state.X_WO[i]);
-        state.X_WO_last.push_back(state.X_WO[i]);
+        state.X_WO_begin.push_back(state.X_WO[i]);
     }
     state.X_WT = model.X_WG_start;
     if (!model.moving.empty()) state.from_hands.resize(model.obstacles.size());

@@ -87,11 +87,8 @@ void takeBack(const ProxyView& view, const ProxyPlace& place) noexcept;
 /// one. Without any so far it always is: every tick gets on. rt-safe.
 class LookBudget {
 public:
-    LookBudget(const HandModel& model, const Report& report) noexcept
-        : report_(report),
-          most_(kFieldBudget / static_cast<std::uint32_t>(model.hands)),
-          begun_(report.work),
-          before_(report.work) {}
+    LookBudget(std::uint32_t most, const Report& report) noexcept
+        : report_(report), most_(most), begun_(report.work), before_(report.work) {}
     /// A look begins.
     void begin() noexcept {
         before_ = report_.work;

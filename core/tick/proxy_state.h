@@ -18,8 +18,8 @@ struct ObstaclePoses {
     static constexpr bool kOnlyRead = true;
     std::vector<Pose> X_WO;
     // When the tick began, of HandModel::moving and of the held part: some hands have had their turn since
-    std::vector<Pose> X_WO_last;
-    Pose X_WG_last;
+    std::vector<Pose> X_WO_begin;
+    Pose X_WG_begin;
 };
 
 /// Where the held part is asked to go, and what pushes it there beside its hand: the hand's pose and nothing, but where
@@ -29,6 +29,7 @@ struct HeldTarget {
     Pose X_WT;
     std::vector<ObstaclePush> from_hands;  // of each obstacle, as Pushes; empty where no other hand is
     std::uint32_t contacts_of_hands = 0;   // that push so
+    std::uint32_t work = 0;                // that the proxy's way may take in this tick, of what all hands have
 };
 
 /// A look from a pose under a budget of nodes, and how far it has come (field_look.h).

@@ -1,5 +1,6 @@
 #include "core/tick/step.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -71,14 +72,22 @@ std::size_t runStages(const HandModel& model, HandState& state, TickFrame& frame
     return i;
 }
 
+/// Work that all hands' proxies may do in a tick, and what one has done.
+std::uint32_t mostWork(const HandModel& model) noexcept {
+    return model.hasSurfaces() ? static_cast<std::uint32_t>(kSurfaceBudget) : kFieldBudget;
+}
+std::uint32_t workDone(const HandModel& model, const TickFrame& frame) noexcept {
+    return model.hasSurfaces() ? frame.nodes_visited : frame.work;
+}
+
 /// Where the hand is.
 std::size_t sense(const HandModel& model, TickState& whole, HandState& state, const DeviceReading& reading,
                   TickFrame& frame, const StageWatch* watch) noexcept {
     frame = TickFrame{};
     frame.reading = reading;
     for (std::size_t i = 0; i < model.moving.size(); ++i)
-        state.X_WO_last[i] = whole.X_WP[model.obstacles[model.moving[i]].body];
-    if (!model.moving.empty()) state.ObstaclePoses::X_WG_last = whole.X_WP[model.body];
+        state.X_WO_begin[i] = whole.X_WP[model.obstacles[model.moving[i]].body];
+    if (!model.moving.empty()) state.X_WG_begin = whole.X_WP[model.body];
     const std::size_t next = runStages(model, state, frame, 0, true, watch);
     // Parts without a proxy are where their hands are, each for the others too.
     if (state.engaged && model.rendersAtHand()) whole.X_WP[model.body] = frame.X_WH;
@@ -111,9 +120,14 @@ void step(const TickModel& model, TickState& state, std::span<const DeviceReadin
     }
     const std::size_t first = static_cast<std::size_t>(state.tick) % count;
     const Turns turns = balanceHands(model.hands, state.hands, std::span(X_WH).first(count), first, state.balance);
+    std::uint32_t spared = 0;  // by those who had their turn
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t hand = turns[i];
-        takeTurn(model.hands[hand], state, state.hands[hand], next[hand], outputs[hand], watch);
+        const HandModel& own = model.hands[hand];
+        const std::uint32_t work = mostWork(own) / static_cast<std::uint32_t>(count) + spared;
+        state.hands[hand].work = work;
+        takeTurn(own, state, state.hands[hand], next[hand], outputs[hand], watch);
+        spared = work - std::min(work, workDone(own, outputs[hand].frame));
     }
     for (const TickOutput& output : outputs) mixOutputs(state.hash, output.frame, output.X_WG);
     ++state.tick;

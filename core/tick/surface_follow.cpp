@@ -46,8 +46,7 @@ SurfaceFollow surfaceFollow(const HandModel& model) {
     }
     follow.surface.emplace(
         *model.held_surface, bodies,
-        surface::SurfaceSettings{
-            .metric_radius = model.metric_radius, .gap = kSurfaceGap, .budget = kSurfaceBudget / model.hands});
+        surface::SurfaceSettings{.metric_radius = model.metric_radius, .gap = kSurfaceGap, .budget = kSurfaceBudget});
     follow.surface->place(model.X_WG_start);
     follow.surface->prepare();
     return follow;
@@ -59,6 +58,7 @@ void followOnSurface(const HandModel& model, const HandSample& hand, const HeldT
     const std::size_t still = model.still_surface != nullptr ? 1 : 0;
     for (std::size_t k = 0; k < model.moving.size(); ++k)
         follow.surface->moveBody(still + k, obstacles.X_WO[model.moving[k]]);
+    follow.surface->setBudget(static_cast<int>(target.work));
     // A spring from the old place would throw the hand across the room.
     if (hand.relocated) follow.surface->place(hand.X_WH);
     const surface::SurfaceTick& now = follow.surface->advance(target.X_WT);

@@ -116,10 +116,10 @@ DeviceReading readingAt(int tick, Random& random) {
 
 /// What step() does before the stages of a hand beside another one, whose part goes to and fro and pushes.
 void moveOther(HandState& state, int tick) {
-    for (std::size_t i = 0; i < state.X_WO_last.size(); ++i) {
-        state.X_WO_last[i] = state.X_WO.back();
+    for (std::size_t i = 0; i < state.X_WO_begin.size(); ++i) {
+        state.X_WO_begin[i] = state.X_WO.back();
         state.X_WO.back().p.x() = 0.01 + 0.004 * std::sin(0.02 * tick);
-        state.ObstaclePoses::X_WG_last = state.X_WG;
+        state.X_WG_begin = state.X_WG;
         state.from_hands.back() = {{Vec3(0.1, 0.2, 0.3), Vec3(0.001, 0.002, 0.003)}, 0.4};
     }
 }
@@ -202,6 +202,7 @@ TEST(Stage, ReadsAndWritesWhatItDeclaresAndNothingElse) {
                 moveOther(bench.state(), i);
                 for (const tick::Stage& stage : bench.model().stages) {
                     if (!stage.senses) bench.state().X_WT = frame.X_WH;
+                    bench.state().work = bench.model().hasSurfaces() ? tick::kSurfaceBudget : tick::kFieldBudget;
                     if (!bench.state().engaged && !stage.before_start) continue;
                     checker.checkThat(tick::AllStages{}, stage.run, bench.state(), frame);
                     if (HasFatalFailure()) return;
