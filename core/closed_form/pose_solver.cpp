@@ -70,7 +70,7 @@ void PoseSolver::add(const Row& row) noexcept {
 
 /// What the last look of a tick has found holds for the first one of the next.
 void PoseSolver::find(const Pose& X) noexcept {
-    if (X_found_ && X_found_->p == X.p && X_found_->q.coeffs() == X.q.coeffs()) {
+    if (isFound(X)) {
         count_ = found_;
         for (std::size_t i = 0; i < count_; ++i) {
             rows_[i].from.push = 0.0;

@@ -93,8 +93,8 @@ public:
 
     const SolidPair& pair(std::size_t i) const noexcept { return searches_[i].pair(); }
 
-    /// The contacts that the last look found: where the last solve ended, if it converged.
-    std::size_t foundCount() const noexcept { return found_; }
+    /// The contacts that the last look found, if it was at this pose: where a solve ends that has converged.
+    std::size_t foundCount(const Pose& X) const noexcept { return isFound(X) ? found_ : 0; }
     const HeldContact& found(std::size_t i) const noexcept { return rows_[i].from; }
 
 private:
@@ -107,6 +107,9 @@ private:
         bool stiff = false;  // kHeldStiffness is in the look's B
     };
 
+    bool isFound(const Pose& X) const noexcept {
+        return X_found_ && X_found_->p == X.p && X_found_->q.coeffs() == X.q.coeffs();
+    }
     void find(const Pose& X) noexcept;
     void remember(const Pose& X, const PoseMemory& memory) noexcept;
     motion::Motion step(const Pose& X, const motion::Motion& wanted, bool back, PoseMemory& memory) noexcept;

@@ -39,7 +39,7 @@ template <class Take>
 void eachContact(const HandModel& model, const HandState& state, Take take) noexcept {
     if (model.hasClosedForm()) {
         const closed_form::PoseSolver& solver = state.solver;
-        for (std::size_t i = 0; i < solver.foundCount(); ++i) {
+        for (std::size_t i = 0; i < solver.foundCount(state.X_WG); ++i) {
             const closed_form::HeldContact& held = solver.found(i);
             take(Found{held.pair, held.contact.point, held.contact.normal, held.contact.gap});
         }
@@ -113,7 +113,6 @@ private:
 
     void collect() noexcept {
         memory_.count = 0;
-        memory_.full = false;
         for (std::size_t h = 0; h < models_.size(); ++h) {
             if (!isBalanced(models_[h], states_[h])) continue;
             eachContact(models_[h], states_[h], [&](const Found& found) { add(h, found); });
@@ -121,11 +120,7 @@ private:
     }
 
     void add(std::size_t hand, const Found& found) noexcept {
-        if (found.room > kFarthestWays * way_) return;
-        if (memory_.count == memory_.contacts.size()) {
-            memory_.full = true;
-            return;
-        }
+        if (found.room > kFarthestWays * way_ || memory_.count == memory_.contacts.size()) return;
         const HandModel& model = models_[hand];
         const std::size_t body = model.obstacles[found.obstacle].body;
         BalancedContact& contact = memory_.contacts[memory_.count];
@@ -241,7 +236,7 @@ BalanceMemory balanceMemory(std::span<const HandModel> models) {
     const bool any = std::any_of(models.begin(), models.end(), [](const HandModel& model) {
         return !model.moving.empty() && model.hasProxy() && model.contact.method != scene::ContactMethod::Penalty;
     });
-    if (any) memory.contacts.resize(kMostBalanceMemory);
+    if (any) memory.contacts.resize(kMostBalanced);
     return memory;
 }
 

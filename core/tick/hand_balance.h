@@ -28,9 +28,9 @@ namespace passung::tick {
 ///   min Σ_h ½K |u_h - w_h|²   s.t.   a_ih · u_h - a_ij · u_j ≥ -g_i,   a_ih = (n_i, r_ih × n_i / ρ_h),
 /// the second term only where the obstacle is in hand j: strictly convex in six unknowns a hand, solved exactly
 /// (active_set.h). Its multipliers λ_i ≥ 0 are the contacts' forces K λ_i n_i, on one part and against the other.
-/// The contacts are those that each proxy's own search left in its last turn. What none of them knows, a proxy's own
-/// sweep finds: then it stops there, and the next tick's balance knows it.
-/// Where contacts leave no common motion, g_i becomes max(0, g_i): u = 0 obeys that.
+/// The contacts are those that each proxy's own search left in its last turn, the first kMostBalanced. What none of
+/// them knows, a proxy's own sweep finds: then it stops there, and the next tick's balance knows it. Where contacts
+/// leave no common motion, g_i becomes max(0, g_i): u = 0 obeys that.
 ///
 /// Turns: who gives way goes first, so that the other need not wait for the next tick.
 ///
@@ -50,11 +50,10 @@ struct BalancedContact {
 
 /// Memory of the balance: it goes from no tick to the next.
 struct BalanceMemory {
-    std::vector<BalancedContact> contacts;  // kMostBalanceMemory, or none where no balance is needed
+    std::vector<BalancedContact> contacts;  // kMostBalanced, or none where no balance is needed
     std::size_t count = 0;
-    bool full = false;
 };
-inline constexpr std::size_t kMostBalanceMemory = 512;
+inline constexpr std::size_t kMostBalanced = 512;
 
 struct HandState;
 
