@@ -439,8 +439,8 @@ std::vector<StageText> stageTexts() {
             spec.display_wrench = false;
             const auto scene = scene::buildScene(spec, cache);
             if (!scene) throw std::runtime_error(toString(scene.errors().front()));
-            for (const auto& stage : tick::makeModel(*scene).hands.front().stages)
-                all.push_back({stage.name, stage.reason});
+            const tick::TickModel model = tick::makeModel(*scene);
+            for (const auto& stage : model.hands.front().stages) all.push_back({stage.name, stage.reason});
         }
     }
     return all;
