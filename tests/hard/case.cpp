@@ -10,8 +10,8 @@
 #include "core/motion/friction_balance.h"
 #include "core/tick/god_object.h"
 #include "core/tick/god_object_heuristic.h"
-#include "core/tick/tick_model.h"
 #include "core/tick/proxy.h"
+#include "core/tick/tick_model.h"
 #include "tests/hard/follow.h"
 #include "tests/hard/relaid.h"
 
