@@ -541,8 +541,11 @@ TEST(MovingBodies, OfWhichManyAreNearAreKeptApartFromAllOfThem) {
     const TriangleMesh cube = test::boxMesh(Vec3::Constant(-.0015), Vec3::Constant(.0015));
     const ClusterTree held(block), tree(cube);
     std::vector<SurfaceBody> bodies;
-    for (int i = 0; i < 60; ++i)
-        bodies.push_back({&tree, {Quat::Identity(), {.008 * (i % 5 - 2), .008 * (i / 5 % 4) - .012, .008 * (i / 20)}}});
+    bodies.reserve(60);
+    for (int i = 0; i < 60; ++i) {
+        const int column = i % 5 - 2, row = i / 5 % 4, layer = i / 20;
+        bodies.push_back({&tree, {Quat::Identity(), {.008 * column, .008 * row - .012, .008 * layer}}});
+    }
     SurfaceProxy proxy(held, bodies, {.metric_radius = .02});
     test::MeshPairTruth truth(block, cube);
     Random random(21);
