@@ -48,7 +48,7 @@ struct BalancedContact {
     static constexpr std::size_t kNobody = ~std::size_t{0};
 };
 
-/// Memory of the balance: it goes from no tick to the next.
+/// Memory of the balance. Nothing in it lasts from one tick to the next.
 struct BalanceMemory {
     std::vector<BalancedContact> contacts;  // kMostBalanced, or none where no balance is needed
     std::size_t count = 0;

@@ -17,7 +17,7 @@ namespace passung::tick {
 struct Body {
     Pose X_WP_start;     // part to world, where a trial begins
     bool held = false;   // by a hand: it moves
-    double reach = 0.0;  // no point is farther from its origin [m]; of held ones
+    double reach = 0.0;  // no point is farther from its origin [m]; known of held ones
     // Geometry::Field only, as far as anybody asks for it
     const field::DistanceField* field = nullptr;
     const shell::SphereTree* shell = nullptr;

@@ -135,9 +135,9 @@ TEST_P(OfEachWay, APartOnAWallIsAWall) {
 }
 
 TEST_P(OfEachWay, PartsPressedAsideTurnAsTheirSpringsAllow) {
-    // Truth: closed form. A narrow box presses a wide one at a distance r from its middle. Along x the narrow one gives
-    // way by f/K, the wide one by f/K and by r sin(angle), where K_φ angle = f r cos(angle) holds it; the narrow one
-    // touches with its middle, so that it does not turn. Solved here for f by bisection, for small faces in contact.
+    // Truth: invariants of statics. A narrow box presses a wide one at a distance r from its middle, so that this one
+    // turns: its spring's torque is K_φ times its angle and the moment of the force through the edge that touches, and
+    // the forces on both are opposite.
     const double r = 0.015, d = 0.002;
     Hands hands(sceneOf({{Box{0.02, 0.0002, 0.004}, at(-0.0102, r, 0)}, {Box{0.02, 0.05, 0.02}, at(0.0102, 0, 0)}}, 2,
                         GetParam()));
