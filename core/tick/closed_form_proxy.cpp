@@ -14,14 +14,10 @@ namespace {
 void noteHold(const HandModel& model, const Proxy& proxy, const closed_form::PoseMemory& hold,
               Pushes& pushes) noexcept {
     clearPushes(pushes);
-    const double K = model.contact.stiffness;
-    const double turn = model.contact.rotational_stiffness / (model.metric_radius * model.metric_radius);
     for (const closed_form::HeldContact& held : hold.all()) {
         const Vec3 push = held.push * held.contact.normal;
-        ObstaclePush& of = pushes.pushes[held.pair];
-        of.wrench.force += K * push;
-        of.wrench.torque += turn * (held.contact.point - proxy.X_WG.p).cross(push);
-        of.pressure += K * push.norm();
+        addPush(model, proxy.X_WG.p, held.contact.point, push, model.contact.stiffness * push.norm(),
+                pushes.pushes[held.pair]);
     }
 }
 

@@ -19,6 +19,12 @@ void clearPushes(Pushes& pushes) noexcept {
     for (ObstaclePush& push : pushes.pushes) push = ObstaclePush{};
 }
 
+void addPush(const HandModel& model, const Vec3& p_WG, const Vec3& point, const Vec3& along, double pressure,
+             ObstaclePush& of) noexcept {
+    const double turn = model.contact.rotational_stiffness / (model.metric_radius * model.metric_radius);
+    add(of, {model.contact.stiffness * along, turn * (point - p_WG).cross(along)}, pressure);
+}
+
 void notePushes(const HandModel& model, const Proxy& proxy, const motion::ConstrainedMotion& motion,
                 const motion::FrictionPatches& rubbing, Pushes& pushes) noexcept {
     clearPushes(pushes);
@@ -28,8 +34,7 @@ void notePushes(const HandModel& model, const Proxy& proxy, const motion::Constr
         const motion::ActiveContact& held = motion.active_contacts[static_cast<std::size_t>(i)];
         const contact::ContactPoint& contact = proxy.manifold[held.contact];
         const Vec3 push = held.push * contact.gradient.normalized();
-        add(pushes.pushes[contact.obstacle], {K * push, turn * (contact.position - proxy.X_WG.p).cross(push)},
-            K * held.push);
+        addPush(model, proxy.X_WG.p, contact.position, push, K * held.push, pushes.pushes[contact.obstacle]);
     }
     for (int p = 0; p < rubbing.count; ++p) {
         const motion::FrictionPatch& patch = rubbing.patch[static_cast<std::size_t>(p)];

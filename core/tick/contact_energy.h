@@ -27,6 +27,9 @@ namespace passung::tick {
 
 /// Forgets the pushes of the tick before. rt-safe.
 void clearPushes(Pushes& pushes) noexcept;
+/// Adds what a contact at `point` pushes the held part with, K times `along` [m]; p_WG: the part's origin. rt-safe.
+void addPush(const HandModel& model, const Vec3& p_WG, const Vec3& point, const Vec3& along, double pressure,
+             ObstaclePush& of) noexcept;
 /// In place of the pushes so far: those of the contacts and patches that hold `motion` of the proxy. rt-safe.
 void notePushes(const HandModel& model, const Proxy& proxy, const motion::ConstrainedMotion& motion,
                 const motion::FrictionPatches& rubbing, Pushes& pushes) noexcept;

@@ -179,12 +179,7 @@ private:
 /// K λ n at its point, on the part of `hand`.
 void push(const HandModel& model, HandState& state, std::size_t obstacle, const Vec3& point,
           const Vec3& along) noexcept {
-    const double K = model.contact.stiffness;
-    const double turn = model.contact.rotational_stiffness / (model.metric_radius * model.metric_radius);
-    ObstaclePush& of = state.from_hands[obstacle];
-    of.wrench.force += K * along;
-    of.wrench.torque += turn * (point - state.X_WG.p).cross(along);
-    of.pressure += K * along.norm();
+    addPush(model, state.X_WG.p, point, along, model.contact.stiffness * along.norm(), state.from_hands[obstacle]);
     ++state.contacts_of_hands;
 }
 

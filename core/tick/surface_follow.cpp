@@ -12,15 +12,10 @@ namespace {
 /// In place of the pushes so far: K λ along each row's normal (contact_energy.h).
 void noteRows(const HandModel& model, const surface::SurfaceProxy& surface, Pushes& pushes) noexcept {
     clearPushes(pushes);
-    const double K = model.contact.stiffness;
-    const double turn = model.contact.rotational_stiffness / (model.metric_radius * model.metric_radius);
     for (const surface::ContactRow& row : surface.rows()) {
         if (!(row.push > 0.0)) continue;
-        ObstaclePush& of = pushes.pushes[obstacleOf(model, surface, row)];
-        const Vec3 push = row.push * surface.normalOf(row);
-        of.wrench.force += K * push;
-        of.wrench.torque += turn * (surface.pointOf(row) - surface.pose().p).cross(push);
-        of.pressure += K * row.push;
+        addPush(model, surface.pose().p, surface.pointOf(row), row.push * surface.normalOf(row),
+                model.contact.stiffness * row.push, pushes.pushes[obstacleOf(model, surface, row)]);
     }
 }
 
