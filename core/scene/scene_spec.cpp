@@ -27,7 +27,7 @@ public:
         }
     }
     void device(const HandSpec& hand) {
-        const auto& [limits, registration, start_gate] = hand;
+        const auto& [limits, registration, start_gate, name] = hand;
         positive("limits: max force", limits.max_force);
         notNegative("limits: max torque", limits.max_torque);
         positive("limits: max force rate", limits.max_force_rate);

@@ -116,6 +116,7 @@ struct HandSpec {
     OutputLimits limits;
     Registration registration;
     StartGate start_gate;
+    std::string name = {};  // as records and exports call it; of the first hand empty
 };
 
 struct SceneSpec {

@@ -13,7 +13,7 @@ const scene::PartSpec* findPart(const scene::SceneSpec& scene, Condition conditi
 }  // namespace
 
 const scene::PartSpec* heldPart(const scene::SceneSpec& scene) {
-    return findPart(scene, [](const scene::PartSpec& part) { return part.held; });
+    return findPart(scene, [](const scene::PartSpec& part) { return part.held && part.hand == 0; });
 }
 
 const scene::PartSpec* partNamed(const scene::SceneSpec& scene, std::string_view name) {

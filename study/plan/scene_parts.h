@@ -6,7 +6,7 @@
 
 namespace passung::plan {
 
-/// The part in the hand; nullptr if there is none (a scene that was validated has one).
+/// The part in the first hand; nullptr if there is none (a scene that was validated has one).
 const scene::PartSpec* heldPart(const scene::SceneSpec& scene);
 
 /// The part of this name; nullptr if there is none.

@@ -76,8 +76,9 @@ struct Condition {
     Cues cues;
     TimedBy timed_by = TimedBy::Program;
     SecondaryTask secondary;
-    std::string device;       // preset
-    std::string params_json;  // every resolved number, for the attempt's row
+    std::string device;                           // preset
+    std::vector<std::string> other_devices = {};  // likewise, of each of the scene's other hands
+    std::string params_json;                      // every resolved number, for the attempt's row
 };
 
 /// How an interrupted session may go on.

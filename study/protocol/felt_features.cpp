@@ -67,7 +67,7 @@ double smallestFeature(const scene::SceneSpec& scene, double spacing, PartGeomet
     double smallest = std::numeric_limits<double>::infinity();
     if (!isSampled(scene)) return smallest;
     for (const scene::PartSpec& part : scene.parts) {
-        if (part.held || isSheet(part, geometries)) continue;
+        if (&part == plan::heldPart(scene) || isSheet(part, geometries)) continue;
         for (const ThinFeature& feature : geometries.thin(part, kCoverShare * spacing, ThinIn::Points))
             if (feature.kind != FeatureKind::Relief) smallest = std::min(smallest, feature.size);
     }
@@ -91,7 +91,7 @@ public:
         const scene::PartSpec* held = plan::heldPart(scene_);
         for (part_ = 0; held != nullptr && part_ < scene_.parts.size(); ++part_) {
             const scene::PartSpec& part = scene_.parts[part_];
-            if (part.held) continue;
+            if (&part == held) continue;
             checkPoints(*held, part);
             if (!isSheet(part, geometries_)) checkField(part);
             if (geometries_.halfSearched(part))
@@ -199,7 +199,8 @@ ContactDefaults defaultsFor(const scene::SceneSpec& scene, PartGeometries& geome
 bool oneWayFeelsAll(const scene::SceneSpec& scene, PartGeometries& geometries) {
     if (!isSampled(scene)) return true;
     return std::all_of(scene.parts.begin(), scene.parts.end(), [&](const scene::PartSpec& part) {
-        return part.held || geometries.thin(part, kCoverShare * scene.contact.spacing, ThinIn::Points).empty();
+        return &part == plan::heldPart(scene) ||
+               geometries.thin(part, kCoverShare * scene.contact.spacing, ThinIn::Points).empty();
     });
 }
 

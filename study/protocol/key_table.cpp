@@ -129,6 +129,7 @@ constexpr std::array kTables{
     TableInfo{"protocol", "Top level of a study", "A study file starts with `passung = 1`. A line `include = \"FILE\"`, anywhere, stands for the lines of FILE, a file\nin the same folder: the stored protocol has them in its place."},
     TableInfo{"study", "`[study]`", ""},
     TableInfo{"scene", "Top level of a scene", "In a study below `[scene]`: `[scene.contact]`, `[[scene.part]]` and so on. A study holds its scene itself, so that\nthe stored text is all of it."},
+    TableInfo{"hand", "`[[hand]]`", "Each hand pushes the others' parts and feels them. The coupling of `[contact]` is one for all hands."},
     TableInfo{"part_file", "Top level of a part file", ""},
     TableInfo{"calibration", "Calibration of a device", "The program writes it: `passung doctor --device NAME --find-stiffness`. `passung doctor` says where it is."},
     TableInfo{"part", "`[[part]]`", "A part has either a `mesh` or a `shape`."},

@@ -130,6 +130,17 @@ scene::MeshFile readMesh(const TableReader& read, const Node& value, double unit
     return {path.lexically_normal().string(), 1.0 / units};
 }
 
+/// Number of the hand that holds the part.
+std::size_t readHand(const TableReader& read, bool held, std::span<const std::string> other_hands) {
+    if (!held) read.fail("hand", "needs held = true");
+    const auto found = std::find(other_hands.begin(), other_hands.end(), read.text("hand"));
+    if (found != other_hands.end()) return static_cast<std::size_t>(found - other_hands.begin()) + 1;
+    read.fail("hand", other_hands.empty()
+                          ? std::string("the scene has no [[hand]]")
+                          : fmt::format("no [[hand]] has this name; there are: {}", fmt::join(other_hands, ", ")));
+    return 0;
+}
+
 }  // namespace
 
 double unitsPerMetre(const TableReader& read, double absent) {
@@ -157,7 +168,7 @@ Pose readPose(const TableReader& read, std::string_view position_key, std::strin
 }
 
 scene::PartSpec readPartNode(const Node& table, const std::string& parent_path, double units_per_metre,
-                             Errors& errors) {
+                             std::span<const std::string> other_hands, Errors& errors) {
     const Node* name = table.find("name");
     std::string path = parent_path;
     path += parent_path.empty() ? "part" : ".part";
@@ -167,6 +178,7 @@ scene::PartSpec readPartNode(const Node& table, const std::string& parent_path, 
     scene::PartSpec part;
     part.name = read.text("name");
     part.held = read.boolean("held");
+    if (read.has("hand")) part.hand = readHand(read, part.held, other_hands);
     const double units = unitsPerMetre(read, units_per_metre);
     part.shown_offset = readPosition(read, "shown_offset", units);
     part.friction = read.number("friction");

@@ -20,6 +20,7 @@ std::string poseJson(const Pose& pose) {
 std::string partJson(const scene::PartSpec& part) {
     JsonObject json;
     json.text("name", part.name).boolean("held", part.held);
+    if (part.hand > 0) json.integer("hand", static_cast<std::int64_t>(part.hand) + 1);
     if (const auto* shape = std::get_if<shape::Shape>(&part.geometry)) {
         JsonObject shape_json;
         shape_json.text("kind", shape::kindName(*shape));
@@ -101,6 +102,38 @@ std::string limitsJson(const scene::OutputLimits& limits) {
         .boolean("actuates_torque", limits.actuates_torque)
         .integer("delay_ticks", limits.delay_ticks)
         .str();
+}
+
+std::string registrationJson(const scene::Registration& registration) {
+    return JsonObject()
+        .json("device_base", poseJson(registration.X_WB))
+        .number("scale", registration.scale)
+        .json("handle", poseJson(registration.X_DH))
+        .str();
+}
+
+std::string startGateJson(const scene::StartGate& gate) {
+    return JsonObject()
+        .number("position_tolerance_m", gate.position_tolerance)
+        .number("angle_tolerance_rad", gate.angle_tolerance)
+        .integer("hold_ticks", gate.hold_ticks)
+        .str();
+}
+
+/// The hands but the first, with their devices.
+std::string otherHandsJson(const plan::Condition& condition) {
+    std::vector<std::string> hands;
+    for (std::size_t i = 0; i < condition.scene.other_hands.size(); ++i) {
+        const scene::HandSpec& hand = condition.scene.other_hands[i];
+        hands.push_back(JsonObject()
+                            .text("hand", hand.name)
+                            .text("device", condition.other_devices.at(i))
+                            .json("limits", limitsJson(hand.limits))
+                            .json("registration", registrationJson(hand.registration))
+                            .json("start_gate", startGateJson(hand.start_gate))
+                            .str());
+    }
+    return jsonList(hands);
 }
 
 std::string effectsJson(const scene::Effects& effects) {
@@ -368,18 +401,11 @@ std::string paramsJson(const plan::Condition& condition) {
         .json("parts", listOf(scene.parts, partJson))
         .json("contact", contactJson(condition))
         .json("limits", limitsJson(scene.limits))
-        .json("registration", JsonObject()
-                                  .json("device_base", poseJson(scene.registration.X_WB))
-                                  .number("scale", scene.registration.scale)
-                                  .json("handle", poseJson(scene.registration.X_DH))
-                                  .str())
-        .json("start_gate", JsonObject()
-                                .number("position_tolerance_m", scene.start_gate.position_tolerance)
-                                .number("angle_tolerance_rad", scene.start_gate.angle_tolerance)
-                                .integer("hold_ticks", scene.start_gate.hold_ticks)
-                                .str())
+        .json("registration", registrationJson(scene.registration))
+        .json("start_gate", startGateJson(scene.start_gate))
         .json("effects", effectsJson(scene.effects))
         .json("task", taskJson(condition.task));
+    if (condition.scene.handCount() > 1) json.json("other_hands", otherHandsJson(condition));
     if (condition.cues.any()) json.json("cues", cuesJson(condition.cues));
     if (condition.comparison) {
         plan::Condition other = condition;

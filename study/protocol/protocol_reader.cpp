@@ -347,6 +347,7 @@ private:
         condition.accuracy_column = content.accuracy_place.column;
         condition.allow_unstable = content.allow_unstable;
         condition.device = std::move(content.device);
+        condition.other_devices = std::move(content.other_devices);
         const bool task = content.parts_sound && isSound([&] {
                               if (root_.has("task")) condition.task = readTask(tables, &condition.scene, errors_);
                           });

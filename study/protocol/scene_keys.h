@@ -15,12 +15,18 @@ using namespace ranges;
 // clang-format off
 inline constexpr std::array kSceneKeys{
     Key{"scene", "unit", Choice, kAny, "um|mm|cm|m|in", "mm", "Unit of lengths without one in their key: shapes, positions, meshes that do not say theirs."},
-    Key{"scene", "part", Tables, kAny, "", "!", "Parts of the scene; exactly one is held."},
+    Key{"scene", "part", Tables, kAny, "", "!", "Parts of the scene; each hand holds exactly one."},
+    Key{"scene", "hand", Tables, kAny, "", "(one hand)", "Further hands, at most three, each with a device of its own. The first hand has no table: it is on `device`."},
     Key{"scene", "contact", Table, kAny, "", "(its defaults)", "Method, coupling and accuracy of contact."},
     Key{"scene", "device", Table, kAny, "", "(no preset)", "Haptic device and its limits; a study needs a preset."},
     Key{"scene", "registration", Table, kAny, "", "(its defaults)", "Pose and scale of the device's space in the scene."},
     Key{"scene", "start_gate", Table, kAny, "", "(no gate)", "Start of a trial: the hand holds the start pose first."},
     Key{"scene", "effects", Table, kAny, "", "(none)", "Further effects, a table each."},
+
+    Key{"hand", "name", Name, kAny, "", "!", "Name of the hand, unique; `hand` of a part, records and exports use it."},
+    Key{"hand", "device", Table, kAny, "", "(the first hand's)", "As `[device]`."},
+    Key{"hand", "registration", Table, kAny, "", "(its defaults)", "As `[registration]`."},
+    Key{"hand", "start_gate", Table, kAny, "", "(no gate)", "As `[start_gate]`: contact starts for each hand when it holds its own start pose."},
 
     Key{"part_file", "unit", Choice, kAny, "um|mm|cm|m|in", "(the caller's)", "Unit of lengths without one in their key."},
     Key{"part_file", "part", Tables, kAny, "", "!", "Exactly one part."},
@@ -37,7 +43,8 @@ inline constexpr std::array kSceneKeys{
     Key{"part", "mesh", Text, kAny, "", "(a shape)", "Mesh file, relative to the file that names it. The data hold its SHA-256, not its content: keep it beside the study; a replay refuses another."},
     Key{"part", "shape", Table, kAny, "", "(a mesh)", "Parametric shape."},
     Key{"part", "pose", Table, kAny, "", "(identity)", "Part to world at the start."},
-    Key{"part", "held", Boolean, kAny, "", "false", "True for the part in the hand."},
+    Key{"part", "held", Boolean, kAny, "", "false", "True for a part in a hand; each hand holds one."},
+    Key{"part", "hand", Name, kAny, "", "(the first)", "Name of the hand that holds the part, one of `[[hand]]`; needs held = true."},
     Key{"part", "friction", Number, from(0, 10), "", "0", "Coefficient at rest. Two parts rub with the geometric mean of theirs: 0 on either side is none. God objects only."},
     Key{"part", "sliding_friction", Number, from(0, 10), "", "(as `friction`)", "Coefficient while sliding; at most `friction`."},
     Key{"part", "shown_offset", LengthVector, kAny, "", "(zero)", "Distance from where the part is touched to where the part is drawn, along the world's axes; not for the held part."},

@@ -16,9 +16,10 @@ namespace passung::protocol {
 /// A scene as read from a tree of values; only for readers in this room.
 struct SceneContent {
     scene::SceneSpec scene;
-    std::string device;            // preset, empty if none is named
-    double accuracy_budget = 0.0;  // [s] > 0: contact.accuracy is "auto"
-    TextPosition accuracy_place;   // of that budget
+    std::string device;                      // preset, empty if none is named
+    std::vector<std::string> other_devices;  // likewise of each of the scene's other hands
+    double accuracy_budget = 0.0;            // [s] > 0: contact.accuracy is "auto"
+    TextPosition accuracy_place;             // of that budget
     bool allow_unstable = false;
     bool parts_sound = false;  // what is said of parts, and the unit
     bool sound = false;        // everything but the device
@@ -40,8 +41,10 @@ void warnOfTolerance(const Node& scene, const std::string& path, std::vector<std
 SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids, const std::string& path,
                            const SceneReading& reading, Errors& errors);
 
-/// Reads one part. Lengths are in its own `unit`, else `units_per_metre` make a metre.
-scene::PartSpec readPartNode(const Node& table, const std::string& parent_path, double units_per_metre, Errors& errors);
+/// Reads one part. Lengths are in its own `unit`, else `units_per_metre` make a metre. `other_hands`: names of the
+/// scene's hands but the first.
+scene::PartSpec readPartNode(const Node& table, const std::string& parent_path, double units_per_metre,
+                             std::span<const std::string> other_hands, Errors& errors);
 
 /// Reads a vector of lengths [m]. Errors: farther than 10 m along an axis.
 Vec3 readPosition(const TableReader& read, std::string_view key, double units_per_metre);

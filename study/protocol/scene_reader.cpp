@@ -22,25 +22,46 @@ constexpr double kDefaultRotationalStiffness = 1.0;  // [N·m/rad], without a de
 constexpr double kHardness = 10.0;                   // of a coupled penalty's contacts, per stiffness of the coupling
 constexpr double kToolShare = 0.1;                   // of a virtual tool's inertia, per the device's
 
+/// Names of the scene's hands but the first, as far as they are names.
+std::vector<std::string> readHandNames(const TableReader& read) {
+    std::vector<std::string> names;
+    for (const Node& table : read.items("hand")) {
+        const Node* name = table.find("name");
+        names.push_back(name != nullptr && name->kind == Node::Kind::Text ? name->text : "");
+    }
+    if (names.size() >= scene::kMostHands)
+        read.fail("hand", fmt::format("must be at most {}: a scene has up to {} hands", scene::kMostHands - 1,
+                                      scene::kMostHands));
+    return names;
+}
+
 std::vector<scene::PartSpec> readParts(const TableReader& read, const Node& scene, const std::string& path,
-                                       double units, Errors& errors) {
+                                       double units, std::span<const std::string> other_hands, Errors& errors) {
     std::vector<scene::PartSpec> parts;
     std::set<std::string> names;
-    bool held = false;
+    std::vector<bool> full(1 + other_hands.size());  // hands that hold a part
     for (const Node& table : read.items("part")) {
-        auto part = readPartNode(table, path, units, errors);
-        const auto report = [&](const char* key, const char* message) {
+        auto part = readPartNode(table, path, units, other_hands, errors);
+        const auto report = [&](const char* key, const std::string& message) {
             const Node& value = *table.find(key);
             errors.push_back(
                 errorAt(value.place, fmt::format("{}.{}", read.pathOf("part"), key), valueText(value), message));
         };
         if (!part.name.empty() && !names.insert(part.name).second) report("name", "is used by another part");
-        if (part.held && held) report("held", "only one part can be held");
-        held = held || part.held;
+        if (part.held && full[part.hand])
+            report("held", part.hand == 0 ? std::string("only one part can be held by the first hand; others need a "
+                                                        "[[hand]] and its name")
+                                          : fmt::format("the hand {} holds another part", other_hands[part.hand - 1]));
+        if (part.held) full[part.hand] = true;
         parts.push_back(std::move(part));
     }
-    if (read.has("part") && !held)
-        errors.push_back(errorAt(scene.place, read.pathOf("part"), "", "one part must be held: held = true"));
+    if (!read.has("part")) return parts;
+    if (!full[0]) errors.push_back(errorAt(scene.place, read.pathOf("part"), "", "one part must be held: held = true"));
+    for (std::size_t i = 0; i < other_hands.size(); ++i)
+        if (!full[i + 1] && !other_hands[i].empty())
+            errors.push_back(
+                errorAt(read.items("hand")[i].place, read.pathOf("hand"), other_hands[i],
+                        fmt::format("holds no part: one needs held = true and hand = \"{}\"", other_hands[i])));
     return parts;
 }
 
@@ -159,7 +180,7 @@ void readPenaltyCoupling(const TableReader& read, const DeviceDescription* devic
 
 /// The device's stable maximum was found under these circumstances only: under others nothing is known to be stable.
 void checkStability(const TableReader& device_table, const TableReader& contact_table, const DeviceDescription* device,
-                    const scene::SceneSpec& scene) {
+                    const scene::ContactSpec& contact, const scene::HandSpec& hand) {
     if (device == nullptr || contact_table.boolean("allow_unstable")) return;
     const bool linear = device->stable_stiffness_N_per_m > 0.0;
     const bool rotational = device->stable_rotational_stiffness_Nm_per_rad > 0.0;
@@ -171,14 +192,29 @@ void checkStability(const TableReader& device_table, const TableReader& contact_
         if (!(std::abs(damping - recommended) <= 1e-9 * recommended))
             refuse(contact_table, key, fmt::format("leave it out or set the recommended {}", recommended));
     };
-    if (linear)
-        checkDamping("damping_Ns_per_m", scene.contact.damping,
-                     device->recommended_damping_Ns_per_m / scene.registration.scale);
+    const double scale = hand.registration.scale;
+    if (linear) checkDamping("damping_Ns_per_m", contact.damping, device->recommended_damping_Ns_per_m / scale);
     if (rotational)
-        checkDamping("rotational_damping_Nms_per_rad", scene.contact.rotational_damping,
+        checkDamping("rotational_damping_Nms_per_rad", contact.rotational_damping,
                      device->recommended_rotational_damping_Nms_per_rad);
     if (!linear && !rotational) return;
-    if (scene.limits.delay_ticks != 0) refuse(device_table, "delay_ticks", "leave it out or set 0");
+    if (hand.limits.delay_ticks != 0) refuse(device_table, "delay_ticks", "leave it out or set 0");
+}
+
+/// The coupling is resolved against the first hand's device: another one has to bear it.
+void checkOtherStiffness(const TableReader& hand_table, const TableReader& contact_table,
+                         const DeviceDescription* device, const scene::ContactSpec& contact,
+                         const scene::HandSpec& hand) {
+    if (device == nullptr || contact_table.boolean("allow_unstable")) return;
+    const auto check = [&](const char* key, double stiffness, double maximum) {
+        if (maximum > 0.0 && stiffness > maximum * (1.0 + 1e-9))
+            hand_table.fail("device", fmt::format("{} displays contact.{} up to {} stably, the scene's is {}; lower "
+                                                  "it, or contact.allow_unstable = true",
+                                                  device->name, key, maximum, stiffness));
+    };
+    check("stiffness_N_per_m", contact.stiffness, device->stable_stiffness_N_per_m / hand.registration.scale);
+    check("rotational_stiffness_Nm_per_rad", contact.rotational_stiffness,
+          device->stable_rotational_stiffness_Nm_per_rad);
 }
 
 /// Refuses a spacing that gives a part too many points, and cells that give it a field too large to build. A mesh is
@@ -273,6 +309,34 @@ scene::StartGate readStartGate(const TableReader& read) {
     return gate;
 }
 
+/// The scene's hands but the first, and their devices.
+void readOtherHands(const TableReader& read, std::span<const std::string> names, double units,
+                    std::span<const DeviceDescription> devices, const TableReader& first_device,
+                    const TableReader& contact_table, SceneContent& content, Errors& errors) {
+    std::set<std::string> known;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const Node& table = read.items("hand")[i];
+        std::string path = read.pathOf("hand");
+        if (isName(names[i])) path += "." + names[i];
+        const TableReader hand_table(table, {"hand"}, path, errors);
+        if (hand_table.has("name") && !known.insert(names[i]).second)
+            hand_table.fail("name", "is used by another hand");
+        const Node absent = emptyTable(table.place);
+        const auto open = [&](const char* name) {
+            const Node* node = hand_table.node(name);
+            return TableReader(node != nullptr ? *node : absent, {name}, hand_table.pathOf(name), errors);
+        };
+        const TableReader own_device = open("device");
+        const TableReader& device_table = hand_table.has("device") ? own_device : first_device;
+        const DeviceDescription* device = findDevice(device_table, devices);
+        scene::HandSpec hand{readLimits(device_table, device), readRegistration(open("registration"), units),
+                             readStartGate(open("start_gate")), names[i]};
+        checkOtherStiffness(hand_table, contact_table, device, content.scene.contact, hand);
+        content.other_devices.push_back(device_table.text("preset"));
+        content.scene.other_hands.push_back(std::move(hand));
+    }
+}
+
 scene::Effects readEffects(const TableReader& read, Errors& errors) {
     scene::Effects effects;
     if (const Node* node = read.node("passivity_controller")) {
@@ -305,7 +369,8 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     };
     SceneContent content;
     const std::size_t before_parts = errors.size();
-    content.scene.parts = readParts(read, table, path, units, errors);
+    const std::vector<std::string> other_hands = readHandNames(read);
+    content.scene.parts = readParts(read, table, path, units, other_hands, errors);
     const bool unit_sound = read.has("unit") || table.find("unit") == nullptr;
     content.parts_sound = unit_sound && read.has("part") && errors.size() == before_parts;
     if (content.parts_sound)
@@ -323,6 +388,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     content.scene.registration = readRegistration(registration_table, units);
     content.scene.contact =
         readContact(contact_table, device, device_table.has("preset"), content.scene.registration.scale);
+    readOtherHands(read, other_hands, units, reading.devices, device_table, contact_table, content, errors);
     if (content.scene.contact.geometry == scene::Geometry::Auto) content.scene.contact.geometry = reading.automatic;
     if (const auto problem = scene::geometryProblem(content.scene); content.parts_sound && problem)
         contact_table.fail("geometry", *problem);
@@ -332,7 +398,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     content.allow_unstable = contact_table.boolean("allow_unstable");
     const auto only_device = [&] { return errors.size() == before + of_device; };
     if (only_device()) checkSizes(contact_table, content.scene, geometries);
-    checkStability(device_table, contact_table, device, content.scene);
+    checkStability(device_table, contact_table, device, content.scene.contact, content.scene.hand(0));
     content.scene.start_gate = readStartGate(open("start_gate"));
     content.scene.effects = readEffects(open("effects"), errors);
     // What only the model itself can judge has no line of its own.
@@ -402,7 +468,7 @@ Result<scene::PartSpec> readPart(const std::string& path, double metres_per_unit
     if (read.has("part") && parts.size() != 1)
         errors.push_back(errorAt(parts.empty() ? document->place : parts[1].place, "part", "", "must be exactly one"));
     scene::PartSpec part;
-    if (!parts.empty()) part = readPartNode(parts[0], "", unitsPerMetre(read, 1.0 / metres_per_unit), errors);
+    if (!parts.empty()) part = readPartNode(parts[0], "", unitsPerMetre(read, 1.0 / metres_per_unit), {}, errors);
     tidy(errors);
     if (!errors.empty()) return errors;
     return part;

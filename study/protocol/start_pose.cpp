@@ -104,23 +104,25 @@ double startDepth(const scene::PartSpec& held, const scene::PartSpec& obstacle) 
 
 void checkStartPose(const Node& scene, const std::string& path, const scene::SceneSpec& spec,
                     PartGeometries& geometries, Errors& errors) {
-    const scene::PartSpec* held = plan::heldPart(spec);
     const Node* parts = scene.find("part");
-    if (held == nullptr || parts == nullptr) return;
-    const Node& table = parts->items[static_cast<std::size_t>(held - spec.parts.data())];
-    const Node* pose = table.find("pose");
-    const Node* position = pose != nullptr ? pose->find("position") : nullptr;
-    const Node& where = position != nullptr ? *position : pose != nullptr ? *pose : table;
-    for (const scene::PartSpec& obstacle : spec.parts) {
-        if (obstacle.held) continue;
-        const double depth = depthAt(*held, held->X_WP, obstacle, geometries);
-        if (!(depth > spec.contact.tolerance)) continue;
-        errors.push_back(
-            errorAt(where.place, fmt::format("{}.part.{}.pose", path, held->name),
-                    position != nullptr ? valueText(*position) : "",
-                    fmt::format("the held part starts {:.3g} mm deep in part {}, more than the field's tolerance of "
-                                "{:.3g} mm: move it out",
-                                1e3 * depth, obstacle.name, 1e3 * spec.contact.tolerance)));
+    if (parts == nullptr) return;
+    for (const scene::PartSpec& held : spec.parts) {
+        if (!held.held) continue;
+        const Node& table = parts->items[static_cast<std::size_t>(&held - spec.parts.data())];
+        const Node* pose = table.find("pose");
+        const Node* position = pose != nullptr ? pose->find("position") : nullptr;
+        const Node& where = position != nullptr ? *position : pose != nullptr ? *pose : table;
+        for (const scene::PartSpec& obstacle : spec.parts) {
+            if (obstacle.held && obstacle.hand <= held.hand) continue;  // itself, and each pair once
+            const double depth = depthAt(held, held.X_WP, obstacle, geometries);
+            if (!(depth > spec.contact.tolerance)) continue;
+            errors.push_back(
+                errorAt(where.place, fmt::format("{}.part.{}.pose", path, held.name),
+                        position != nullptr ? valueText(*position) : "",
+                        fmt::format("the held part starts {:.3g} mm deep in part {}, more than the field's tolerance "
+                                    "of {:.3g} mm: move it out",
+                                    1e3 * depth, obstacle.name, 1e3 * spec.contact.tolerance)));
+        }
     }
 }
 

@@ -18,7 +18,7 @@ constexpr double kWayBack = 2.0;  // [s] that returning to the start of a pair's
 /// The part that the task is about; nullptr after reporting why there is none.
 const scene::PartSpec* findTarget(const TableReader& read, const scene::SceneSpec& scene) {
     const scene::PartSpec* part = plan::partNamed(scene, read.text("target"));
-    if (part != nullptr && !part->held) return part;
+    if (part != nullptr && part != plan::heldPart(scene)) return part;
     if (part != nullptr) {
         read.fail("target", "must not be the held part");
         return nullptr;

@@ -369,14 +369,16 @@ private:
         sub = command("simulate", "run a scene along a device path", simulate_, simulate);
         sub->add_option("SCENE", simulate_.scene, "scene file (.toml), not a study")->required();
         addImport(sub, simulate_.import_limits);
-        sub->add_option("--trajectory", simulate_.trajectory,
+        sub->add_option("--trajectory", simulate_.trajectories,
                         "CSV of poses of the held part in the world, in seconds and metres; header: "
-                        "t_s,x_m,y_m,z_m,qw,qx,qy,qz")
-            ->required();
-        sub->add_option("--out", simulate_.out,
-                        "CSV of ticks. force_* and torque_* are what the device would be told: on the hand, in the "
-                        "world, about the held part's origin, after all limits")
-            ->required();
+                        "t_s,x_m,y_m,z_m,qw,qx,qy,qz. Once for each hand of the scene, in their order")
+            ->required()
+            ->allow_extra_args(false);
+        sub->add_option("--out", simulate_.outs,
+                        "CSV of ticks, once for each hand. force_* and torque_* are what the device would be told: on "
+                        "the hand, in the world, about the held part's origin, after all limits")
+            ->required()
+            ->allow_extra_args(false);
 
         addAccuracyCommand(units);
 

@@ -177,7 +177,8 @@ struct QueryArguments {
 int query(const QueryArguments& options);
 
 struct SimulateArguments {
-    std::string scene, trajectory, out;
+    std::string scene;
+    std::vector<std::string> trajectories, outs;  // one for each hand
     run::ImportLimits import_limits;
 };
 int simulate(const SimulateArguments& options);

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <iterator>
+#include <vector>
 
 #include "core/base/processor_clock.h"
 #include "core/base/regular_file.h"
@@ -46,11 +49,27 @@ void writeRow(fmt::memory_buffer& text, std::int64_t tick, const tick::TickOutpu
                    known(f.proxy_lag));
 }
 
+/// Refuses outputs that would overwrite an input or have one name, and a number of them that is not the inputs'.
+Result<Done> checkFiles(const SimulateArguments& options) {
+    std::vector<std::string> inputs{options.scene};
+    inputs.insert(inputs.end(), options.trajectories.begin(), options.trajectories.end());
+    if (options.outs.size() != options.trajectories.size())
+        return Error{.message = "must be given as often as --trajectory, once for each hand",
+                     .key = "--out",
+                     .value = fmt::format("{} files", options.outs.size())};
+    for (const std::string& out : options.outs) {
+        if (auto free = refuseOverwriting(out, inputs); !free) return free.errors();
+        if (std::count(options.outs.begin(), options.outs.end(), out) > 1)
+            return Error{.message = "must be another file for each hand", .key = "--out", .value = out};
+    }
+    return Done{};
+}
+
 }  // namespace
 
 int simulate(const SimulateArguments& options) {
-    if (const auto free = refuseOverwriting(options.out, {options.scene, options.trajectory}); !free)
-        return fail(free.errors());
+    const std::size_t hands = options.trajectories.size();
+    if (const auto free = checkFiles(options); !free) return fail(free.errors());
     const auto source = readFile(options.scene);
     if (!source) return fail(source.errors());
     ProgressLine progress;
@@ -59,12 +78,27 @@ int simulate(const SimulateArguments& options) {
     if (!read) return fail(read.errors());
     warn(options.scene, read->warnings);
     scene::SceneSpec* spec = &read->scene;
-    const auto trajectory = scripted::Trajectory::read(options.trajectory);
-    if (!trajectory) return fail(trajectory.errors());
-    // The file holds poses of the held part in the world, so that the registration has nothing to do; and the run
-    // begins with its first row, wherever that is.
+    if (spec->handCount() != hands)
+        return fail(
+            {{.message = fmt::format("must be given once for each hand of the scene, which has {}", spec->handCount()),
+              .key = "--trajectory",
+              .value = fmt::format("{} files", hands)}});
+    std::vector<scripted::Trajectory> trajectories;
+    std::int64_t last = 0;
+    for (const std::string& path : options.trajectories) {
+        auto trajectory = scripted::Trajectory::read(path);
+        if (!trajectory) return fail(trajectory.errors());
+        last = std::max(last, trajectory->lastTick());
+        trajectories.push_back(*std::move(trajectory));
+    }
+    // The files hold poses of the held parts in the world, so that the registrations have nothing to do; and the run
+    // begins with their first rows, wherever these are.
     spec->registration = scene::Registration{};
     spec->start_gate = scene::StartGate{};
+    for (scene::HandSpec& hand : spec->other_hands) {
+        hand.registration = scene::Registration{};
+        hand.start_gate = scene::StartGate{};
+    }
     const auto store = run::openBuilds(options.import_limits, showBuilds(progress));
     scene::PartCache cache(store.get());
     progress.show("building the scene");
@@ -72,24 +106,29 @@ int simulate(const SimulateArguments& options) {
     if (!scene) return fail(scene.errors());
     const tick::SceneModels models(*scene);
     tick::SceneSequence ticks(std::array{tick::SceneTurn{&models[0]}});
-    OutputFile out(options.out);
-    out.write(kHeader);
+    std::deque<OutputFile> outs;
+    for (const std::string& path : options.outs) outs.emplace_back(path).write(kHeader);
+    std::vector<DeviceReading> readings(hands);
+    std::vector<tick::TickOutput> outputs(hands);
     fmt::memory_buffer text;
-    for (std::int64_t i = 0; i <= trajectory->lastTick(); ++i) {
-        DeviceReading reading;
-        reading.X_BD = trajectory->at(i);
+    for (std::int64_t i = 0; i <= last; ++i) {
+        for (std::size_t hand = 0; hand < hands; ++hand)
+            readings[hand].X_BD = trajectories[hand].at(std::min(i, trajectories[hand].lastTick()));
         const std::int64_t processor_begin = threadProcessorNanoseconds();
         const auto begin = std::chrono::steady_clock::now();
-        const tick::TickOutput output = ticks.step(reading);
+        ticks.step(readings, outputs);
         const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
         const std::int64_t processor = threadProcessorNanoseconds() - processor_begin;
-        text.clear();
-        writeRow(text, i, output, {took.count(), 1e-3 * static_cast<double>(processor)});
-        out.write({text.data(), text.size()});
-        if (i % 10000 == 0) progress.show(fmt::format("{} of {} ticks", i, trajectory->lastTick() + 1));
+        for (std::size_t hand = 0; hand < hands; ++hand) {
+            text.clear();
+            writeRow(text, i, outputs[hand], {took.count(), 1e-3 * static_cast<double>(processor)});
+            outs[hand].write({text.data(), text.size()});
+        }
+        if (i % 10000 == 0) progress.show(fmt::format("{} of {} ticks", i, last + 1));
     }
-    const auto done = out.commit();
-    return done ? 0 : fail(done.errors());
+    for (OutputFile& out : outs)
+        if (const auto done = out.commit(); !done) return fail(done.errors());
+    return 0;
 }
 
 }  // namespace passung::cli

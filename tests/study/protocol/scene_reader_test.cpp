@@ -167,6 +167,79 @@ TEST(SceneReader, KnowsItsUnits) {
     EXPECT_EQ(diameter(read("unit = \"m\"\n" + sphere + "unit = \"mm\"\n")), 2e-3);
 }
 
+/// A plate in the hand `hand`, a peg in the first one, and those further hands.
+std::string handScene(const std::string& hand, const std::string& hands, const std::string& more = "") {
+    return R"([[part]]
+name = "plate"
+held = true
+)" + hand + R"(
+shape = { kind = "box", width = 60, depth = 50, height = 30 }
+[[part]]
+name = "peg"
+held = true
+shape = { kind = "box", width = 10, depth = 10, height = 10 }
+pose = { position = [0, 0, 40] }
+)" + more + hands;
+}
+
+TEST(SceneReader, ReadsFurtherHandsWithTheirDevices) {
+    // Truth: the file, by hand. A hand without a device of its own has the first one's.
+    const std::string device = "[device]\npreset = \"arm\"\nmax_force_N = 9\n";
+    const auto same = read(handScene("hand = \"left\"", "[[hand]]\nname = \"left\"\n", device));
+    ASSERT_TRUE(same) << toString(same.errors().front());
+    ASSERT_EQ(same->handCount(), 2u);
+    EXPECT_EQ(same->heldBy(0), 1u);
+    EXPECT_EQ(same->heldBy(1), 0u);
+    EXPECT_EQ(same->hand(1).name, "left");
+    EXPECT_EQ(same->hand(1).limits.max_force, 9.0);
+    EXPECT_EQ(same->hand(1).registration.scale, 1.0);
+
+    const auto own = read(handScene("hand = \"left\"",
+                                    "[[hand]]\nname = \"left\"\ndevice = { preset = \"arm\", max_force_N = 7 }\n"
+                                    "registration = { position = [100, 0, 0] }\nstart_gate = { hold_ms = 50 }\n",
+                                    device));
+    ASSERT_TRUE(own) << toString(own.errors().front());
+    EXPECT_EQ(own->hand(0).limits.max_force, 9.0);
+    EXPECT_EQ(own->hand(1).limits.max_force, 7.0);
+    EXPECT_EQ(own->hand(1).registration.X_WB.p, Vec3(0.1, 0, 0));
+    EXPECT_EQ(own->hand(1).start_gate.hold_ticks, 50);
+    EXPECT_EQ(own->hand(0).start_gate.hold_ticks, 0);
+}
+
+TEST(SceneReader, TellsWhatIsWrongWithHands) {
+    // Truth: the rules of KEYS.md; place, key, value, requirement.
+    const std::string left = "[[hand]]\nname = \"left\"\n";
+    EXPECT_EQ(errorsOf(handScene("hand = \"right\"", left)),
+              "s.toml:4:8: error: part.plate.hand: \"right\": no [[hand]] has this name; there are: left\n"
+              "s.toml:8:8: error: part.held: true: only one part can be held by the first hand; others need a "
+              "[[hand]] and its name\n"
+              "s.toml:11:1: error: hand: left: holds no part: one needs held = true and hand = \"left\"");
+    EXPECT_EQ(errorsOf(handScene("hand = \"left\"", "")),
+              "s.toml:4:8: error: part.plate.hand: \"left\": the scene has no [[hand]]\n"
+              "s.toml:8:8: error: part.held: true: only one part can be held by the first hand; others need a "
+              "[[hand]] and its name");
+    std::string loose = handScene("hand = \"left\"", left);
+    loose.replace(loose.find("held = true"), 11, "held = false");
+    EXPECT_EQ(errorsOf(loose),
+              "s.toml:4:8: error: part.plate.hand: \"left\": needs held = true\n"
+              "s.toml:11:1: error: hand: left: holds no part: one needs held = true and hand = \"left\"");
+    EXPECT_NE(errorsOf(handScene("hand = \"left\"", left + left)).find("is used by another hand"), std::string::npos);
+    EXPECT_NE(errorsOf(handScene("hand = \"left\"", "[[hand]]\nname = \"left\"\nforce = 2\n"))
+                  .find("hand.left.force: unknown key; known keys: name, device, registration, start_gate"),
+              std::string::npos);
+}
+
+TEST(SceneReader, RefusesAStiffnessThatAnotherHandsDeviceDoesNotBear) {
+    // Truth: the device's stable maximum, 1000 N/m of "stick"; the scene's is that of "arm", 4000 N/m.
+    const std::string device = "[device]\npreset = \"arm\"\n";
+    const std::string stick = "[[hand]]\nname = \"left\"\ndevice = { preset = \"stick\" }\n";
+    EXPECT_NE(errorsOf(handScene("hand = \"left\"", stick, device))
+                  .find("stick displays contact.stiffness_N_per_m up to 1000 stably, the scene's is 4000"),
+              std::string::npos);
+    EXPECT_EQ(errorsOf(handScene("hand = \"left\"", stick, device + "[contact]\nstiffness_N_per_m = 900\n")), "");
+    EXPECT_EQ(errorsOf(handScene("hand = \"left\"", stick, device + "[contact]\nallow_unstable = true\n")), "");
+}
+
 TEST(SceneReader, RotatesAboutFixedAxesInTheOrderXYZ) {
     // Truth: closed form: R = Rz Ry Rx written as matrices of sines and cosines.
     const auto scene = read(kParts);
