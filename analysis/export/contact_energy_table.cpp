@@ -12,9 +12,13 @@ struct PairRow {
     const session::ContactEnergy* pair;
 };
 
-ColumnsOf<PairRow> pairColumns() {
+/// `hands`: several of them held parts.
+ColumnsOf<PairRow> pairColumns(bool hands) {
     ColumnsOf<PairRow> columns;
     append(columns, attemptColumns(), attemptOf<PairRow>);
+    if (hands)
+        append(columns, {{"hand", "Hand that held the part; NA: the first", "text",
+                          [](const PairRow& row) { return row.pair->hand; }}});
     append(
         columns,
         {{"scene", "Which of the scenes that were rendered one after the other, from 1; most trials have one",
@@ -40,11 +44,15 @@ ColumnsOf<PairRow> pairColumns() {
 
 Table makeContactEnergy(const StudyData& study) {
     std::vector<PairRow> rows;
+    bool hands = false;
     for (const store::AttemptRow& attempt : study.attempts) {
         std::int64_t scene = 1;
-        for (const session::ContactEnergy& pair : attempt.contact_energy) {
-            rows.push_back({&attempt, scene, &pair});
-            if (pair.obstacle.empty()) ++scene;  // the last row of a scene
+        const auto& pairs = attempt.contact_energy;
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            rows.push_back({&attempt, scene, &pairs[i]});
+            hands = hands || !pairs[i].hand.empty();
+            // The last row of a hand; the next scene begins with the first one.
+            if (pairs[i].obstacle.empty() && (i + 1 == pairs.size() || pairs[i + 1].hand.empty())) ++scene;
         }
     }
     return makeTable(
@@ -52,7 +60,7 @@ Table makeContactEnergy(const StudyData& study) {
         "One row per attempt, scene and obstacle, and one per scene for what no obstacle pushed: the energy account of "
         "the pair of the held part and that obstacle when the scene ended. A scene's rows add up to its account, "
         "energy_J of its last tick.",
-        pairColumns(), rows);
+        pairColumns(hands), rows);
 }
 
 }  // namespace passung::exporter

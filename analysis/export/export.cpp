@@ -148,20 +148,25 @@ void writeSamples(const store::StoreReader& reader, const StudyData& study, cons
         }
         packings.pop_front();
     };
+    /// False: this hand has no ticks.
+    const auto packHand = [&](const store::AttemptRow& attempt, std::size_t hand) {
+        auto records = reader.records(attempt.attempt_id, hand);
+        if (!records) writer.fail(records.errors());
+        if (!records || records->empty()) return false;
+        if (packings.size() == at_once) writeOldest();
+        // What is commanded beside the force goes to the first hand.
+        packings.push_back(
+            {samplesFile(attempt, hand),
+             std::async(std::launch::async, [ticks = *std::move(records),
+                                             signals = hand == 0 ? sampleSignals(study, attempt) : SampleSignals{}] {
+                 return gzip(samplesCsv(ticks, signals));
+             })});
+        return true;
+    };
     for (std::size_t i = 0; i < study.attempts.size() && !writer.failed(); ++i) {
-        auto records = reader.records(study.attempts[i].attempt_id);
-        if (!records) {
-            writer.fail(records.errors());
-            break;
+        for (std::size_t hand = 0; packHand(study.attempts[i], hand); ++hand) {
         }
-        if (!records->empty()) {
-            if (packings.size() == at_once) writeOldest();
-            packings.push_back({samplesFile(study.attempts[i]),
-                                std::async(std::launch::async, [ticks = *std::move(records),
-                                                                signals = sampleSignals(study, study.attempts[i])] {
-                                    return gzip(samplesCsv(ticks, signals));
-                                })});
-        }
+        if (writer.failed()) break;
         if (options.cancelled && options.cancelled()) writer.fail({Error{.message = "the export was cancelled"}});
         if (options.progress) {
             options.progress(static_cast<double>(i + 1) / static_cast<double>(study.attempts.size()));

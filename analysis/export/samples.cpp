@@ -155,9 +155,10 @@ std::vector<Column> sampleColumns() {
     return columns;
 }
 
-std::string samplesFile(const store::AttemptRow& attempt) {
+std::string samplesFile(const store::AttemptRow& attempt, std::size_t hand) {
     return "samples/" + attempt.participant_id + "_" + std::to_string(attempt.session_ordinal) + "_t" +
-           padded(attempt.trial_index) + "_a" + std::to_string(attempt.attempt_no) + ".csv.gz";
+           padded(attempt.trial_index) + "_a" + std::to_string(attempt.attempt_no) +
+           (hand == 0 ? "" : "_hand" + std::to_string(hand + 1)) + ".csv.gz";
 }
 
 SampleSignals sampleSignals(const StudyData& study, const store::AttemptRow& attempt) {

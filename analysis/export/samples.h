@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -18,8 +19,9 @@ namespace passung::exporter {
 /// them. Computing times are not among them.
 std::vector<Column> sampleColumns();
 
-/// `samples/<participant>_<session>_t<trial>_a<attempt>.csv.gz`
-std::string samplesFile(const store::AttemptRow& attempt);
+/// `samples/<participant>_<session>_t<trial>_a<attempt>.csv.gz`; of another hand than the first, `hand` from 0, with
+/// `_hand2` and so on before the dot.
+std::string samplesFile(const store::AttemptRow& attempt, std::size_t hand);
 
 /// What was commanded beside the force while an attempt's ticks were recorded.
 struct SampleSignals {

@@ -420,7 +420,12 @@ std::shared_ptr<const OverlapBody> OverlapBodies::of(const scene::Part& part) {
 SceneOverlap::SceneOverlap(const scene::Scene& scene, OverlapBodies& bodies)
     : held_(bodies.of(*scene.parts[scene.held])) {
     for (std::size_t i = 0; i < scene.parts.size(); ++i)
-        if (i != scene.held) obstacles_.push_back({bodies.of(*scene.parts[i]), scene.spec.parts[i].X_WP});
+        if (i != scene.held) obstacles_.push_back({i, bodies.of(*scene.parts[i]), scene.spec.parts[i].X_WP});
+}
+
+void SceneOverlap::place(std::size_t part, const Pose& X_W) {
+    for (Obstacle& obstacle : obstacles_)
+        if (obstacle.part == part) obstacle.X_WO = X_W;
 }
 
 Overlap SceneOverlap::at(const Pose& X_WG, const OverlapEffort& search) const {

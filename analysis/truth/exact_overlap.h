@@ -105,6 +105,8 @@ public:
     SceneOverlap(const scene::Scene& scene, OverlapBodies& bodies);
 
     bool hasObstacles() const { return !obstacles_.empty(); }
+    /// Puts an obstacle elsewhere than where it starts. `part`: its number in the scene.
+    void place(std::size_t part, const Pose& X_W);
     /// With the held part at X_WG.
     Overlap at(const Pose& X_WG, const OverlapEffort& search = {}) const;
     /// Do the held part's triangles meet any obstacle's?
@@ -112,6 +114,7 @@ public:
 
 private:
     struct Obstacle {
+        std::size_t part;
         std::shared_ptr<const OverlapBody> body;
         Pose X_WO;
     };

@@ -1,16 +1,22 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "core/base/device_description.h"
 #include "core/base/tick_record.h"
 #include "core/base/types.h"
+#include "core/scene/scene_spec.h"
 
 namespace passung::loop {
 
 /// What a person sees of the scene, at the display's rate: never more than is on the screen.
 struct DisplayedImage {
     std::int64_t tick = 0;
-    Pose X_WShown;         // the held part as drawn (proxy or device pose: the protocol's choice)
+    Pose X_WShown;         // the part in this device's hand as drawn (proxy or device pose: the protocol's choice)
     bool running = false;  // the trial has started (the "go" sign)
+    // Every hand's part as drawn, in the order of the scene; of hands that it has not: identity.
+    std::array<Pose, scene::kMostHands> X_WHeld = {};
 };
 
 /// A haptic device, simulated or real. The loop calls read() then command() once a cycle, from one thread.

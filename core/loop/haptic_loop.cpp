@@ -38,49 +38,69 @@ void sleepUntil(std::int64_t nanoseconds) noexcept {
 
 HapticCycle::HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy,
                          std::span<ScreenRing* const> screens)
-    : HapticCycle(std::array{tick::SceneTurn{&model}}, device, ring, show_proxy, screens) {}
+    : HapticCycle(std::array{tick::SceneTurn{&model}}, std::array{HandPort{&device, &ring}}, show_proxy, screens) {}
 
-HapticCycle::HapticCycle(std::span<const tick::SceneTurn> turns, HapticDevice& device, RecordRing& ring,
-                         bool show_proxy, std::span<ScreenRing* const> screens, TickListener* listener, bool timed)
+HapticCycle::HapticCycle(std::span<const tick::SceneTurn> turns, std::span<const HandPort> hands, bool show_proxy,
+                         std::span<ScreenRing* const> screens, TickListener* listener, bool timed)
     : scenes_(turns),
-      device_(device),
-      ring_(ring),
+      hands_(hands.begin(), hands.end()),
+      readings_(hands.size()),
+      outputs_(hands.size()),
       show_proxy_(show_proxy),
       screens_(screens),
       listener_(listener),
       timed_(timed) {}
 
+void HapticCycle::release() noexcept {
+    for (const HandPort& hand : hands_) hand.device->command(Wrench{});
+}
+
 /// The clock of the processor is the slower to read: outside, where it does not count as the tick's wall time.
-tick::TickOutput HapticCycle::compute(const DeviceReading& reading, Times& times) noexcept {
-    if (!timed_) return scenes_.step(reading);
+void HapticCycle::compute(Times& times) noexcept {
+    if (!timed_) return scenes_.step(readings_, outputs_);
     const std::int64_t processor_begin = threadProcessorNanoseconds();
     times.begin = now();
-    const tick::TickOutput output = scenes_.step(reading);
+    scenes_.step(readings_, outputs_);
     times.wall = now() - times.begin;
     times.processor = threadProcessorNanoseconds() - processor_begin;
     timing_.add(times.wall);
     processor_timing_.add(times.processor);
-    return output;
 }
 
 void HapticCycle::run(std::uint32_t missed) noexcept {
     const std::int64_t tick = scenes_.tick();
-    DeviceReading reading = device_.read();
-    reading.periods = 1 + missed;
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+        readings_[i] = hands_[i].device->read();
+        readings_[i].periods = 1 + missed;
+    }
     Times times;
-    const tick::TickOutput output = compute(reading, times);
-    device_.command(output.F_D_B);
+    compute(times);
+    for (std::size_t i = 0; i < hands_.size(); ++i) hands_[i].device->command(outputs_[i].F_D_B);
 
-    TickRecord record = tick::makeRecord(tick, reading, output);
-    record.duration_ns = times.wall;
-    record.processor_ns = times.processor;
-    ring_.tryPush(record);
-    for (ScreenRing* screen : screens_) screen->tryPush({record, times.begin});
-    if (listener_ != nullptr) listener_->take(record);
+    ScreenTick shown{.record = {}, .began_ns = times.begin};
+    for (std::size_t i = hands_.size(); i-- > 0;) {  // whoever has the first hand's record finds the others'
+        TickRecord record = tick::makeRecord(tick, readings_[i], outputs_[i]);
+        record.duration_ns = times.wall;
+        record.processor_ns = times.processor;
+        hands_[i].ring->tryPush(record);
+        if (i == 0)
+            shown.record = record;
+        else
+            shown.others[i - 1] = {outputs_[i].frame.X_WH, outputs_[i].X_WG};
+    }
+    for (ScreenRing* screen : screens_) screen->tryPush(shown);
+    if (listener_ != nullptr) listener_->take(shown.record);
+    if (hasPicture(tick)) show(tick);
+}
 
-    if (hasPicture(tick)) {
-        const bool running = (output.frame.status & kEngaged) != 0;
-        device_.show({tick, show_proxy_ ? output.X_WG : output.frame.X_WH, running});
+void HapticCycle::show(std::int64_t tick) noexcept {
+    DisplayedImage image{.tick = tick, .X_WShown = {}, .running = false};
+    for (std::size_t i = 0; i < hands_.size(); ++i)
+        image.X_WHeld[i] = show_proxy_ ? outputs_[i].X_WG : outputs_[i].frame.X_WH;
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+        image.X_WShown = image.X_WHeld[i];
+        image.running = (outputs_[i].frame.status & kEngaged) != 0;
+        hands_[i].device->show(image);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <thread>
+#include <vector>
 
 #include "core/base/tick_record.h"
 #include "core/loop/haptic_device.h"
@@ -27,23 +28,30 @@ public:
     virtual void take(const TickRecord& record) noexcept = 0;  // rt-safe
 };
 
-/// The haptic cycle, whatever clock drives it: read the device, compute the tick, command the wrench, record.
+/// What a hand of the scene holds, and the ring that gets its records.
+struct HandPort {
+    HapticDevice* device = nullptr;
+    RecordRing* ring = nullptr;
+};
+
+/// The haptic cycle, whatever clock drives it: read the devices, compute the tick, command the wrenches, record.
 class HapticCycle {
 public:
-    /// `show_proxy`: the display draws the proxy, otherwise the device's pose. `screens` get every tick too; what
-    /// they drop matters to nobody. Borrows everything.
+    /// Of a scene with one hand. `show_proxy`: the display draws the proxy, otherwise the device's pose. `screens` get
+    /// every tick too; what they drop matters to nobody. Borrows everything.
     HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy,
                 std::span<ScreenRing* const> screens = {});
-    /// The same for scenes that are rendered one after the other. Not `timed`: no clock is read, all times are 0.
-    HapticCycle(std::span<const tick::SceneTurn> turns, HapticDevice& device, RecordRing& ring, bool show_proxy,
+    /// Of scenes that are rendered one after the other, each with `hands`, in their order. `listener`: to the first
+    /// hand's records. Not `timed`: no clock is read, all times are 0.
+    HapticCycle(std::span<const tick::SceneTurn> turns, std::span<const HandPort> hands, bool show_proxy,
                 std::span<ScreenRing* const> screens = {}, TickListener* listener = nullptr, bool timed = true);
 
     /// One cycle. `missed`: cycles that were missed since the previous one, because it ended after its deadline; for
     /// the record, which else could not tell how much time lies between two ticks. rt-safe.
     void run(std::uint32_t missed = 0) noexcept;
 
-    /// Commands a zero wrench. rt-safe.
-    void release() noexcept { device_.command(Wrench{}); }
+    /// Commands zero wrenches. rt-safe.
+    void release() noexcept;
 
     std::int64_t ticks() const { return scenes_.tick(); }
     std::uint64_t stateHash() const { return scenes_.hash(); }
@@ -58,11 +66,13 @@ private:
     struct Times {
         std::int64_t begin = 0, wall = 0, processor = 0;  // when it began, how long it took [ns]
     };
-    tick::TickOutput compute(const DeviceReading& reading, Times& times) noexcept;
+    void compute(Times& times) noexcept;
+    void show(std::int64_t tick) noexcept;
 
     tick::SceneSequence scenes_;
-    HapticDevice& device_;
-    RecordRing& ring_;
+    std::vector<HandPort> hands_;
+    std::vector<DeviceReading> readings_;  // of the newest tick, as the others
+    std::vector<tick::TickOutput> outputs_;
     bool show_proxy_;
     std::span<ScreenRing* const> screens_;
     TickListener* listener_;  // may be null

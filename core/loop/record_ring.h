@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cstddef>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "core/base/tick_record.h"
+#include "core/scene/scene_spec.h"
 
 namespace passung::loop {
 
@@ -53,10 +55,16 @@ private:
 
 using RecordRing = Ring<TickRecord>;
 
+/// Where a hand's part is in a tick.
+struct HeldPart {
+    Pose X_WH, X_WG;  // where the device asks it to be, and its proxy
+};
+
 /// What a screen learns of a tick.
 struct ScreenTick {
-    TickRecord record;
-    std::int64_t began_ns = 0;  // when the device had been read, on the steady clock
+    TickRecord record;                                        // of the first hand
+    std::int64_t began_ns = 0;                                // when the devices had been read, on the steady clock
+    std::array<HeldPart, scene::kMostHands - 1> others = {};  // the other hands' parts, in the order of the scene
 };
 using ScreenRing = Ring<ScreenTick>;
 

@@ -1,5 +1,6 @@
 #include "core/replay/replayer.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -64,6 +65,21 @@ std::optional<Difference> compare(const TickRecord& recorded, const TickRecord& 
     return comparison.difference;
 }
 
+/// Tells in which hand it is; of the first one nothing needs to be told.
+std::optional<Difference> ofHand(std::size_t hand, std::optional<Difference> difference) {
+    if (difference && hand > 0) difference->column = "hand " + std::to_string(hand + 1) + ": " + difference->column;
+    return difference;
+}
+
+/// The first hand that has no record number `i`, of `tick`: nobody knows what the tick computed from.
+std::optional<Difference> missingTick(std::span<const std::vector<TickRecord>> hands, std::size_t i,
+                                      std::int64_t tick) {
+    for (std::size_t hand = 0; hand < hands.size(); ++hand)
+        if (i >= hands[hand].size())
+            return ofHand(hand, Difference{tick, "tick", std::nan(""), static_cast<double>(tick)});
+    return std::nullopt;
+}
+
 }  // namespace
 
 ReplayReport replay(const scene::Scene& scene, std::span<const TickRecord> records) {
@@ -72,13 +88,25 @@ ReplayReport replay(const scene::Scene& scene, std::span<const TickRecord> recor
 }
 
 ReplayReport replay(std::span<const tick::SceneTurn> turns, std::span<const TickRecord> records) {
+    return replayHands(turns, std::array{std::vector<TickRecord>(records.begin(), records.end())});
+}
+
+ReplayReport replayHands(std::span<const tick::SceneTurn> turns, std::span<const std::vector<TickRecord>> hands) {
     tick::SceneSequence scenes(turns);
     ReplayReport report;
-    for (const TickRecord& recorded : records) {
+    std::vector<DeviceReading> readings(hands.size());
+    std::vector<tick::TickOutput> outputs(hands.size());
+    std::size_t ticks = 0;
+    for (const auto& records : hands) ticks = std::max(ticks, records.size());
+    for (std::size_t i = 0; i < ticks; ++i) {
         const std::int64_t tick = scenes.tick();
-        const DeviceReading reading = tick::readingOf(recorded);
-        const TickRecord replayed = tick::makeRecord(tick, reading, scenes.step(reading));
-        if (!report.first_difference) report.first_difference = compare(recorded, replayed);
+        for (std::size_t hand = 0; hand < hands.size(); ++hand)
+            if (i < hands[hand].size()) readings[hand] = tick::readingOf(hands[hand][i]);
+        scenes.step(readings, outputs);
+        if (!report.first_difference) report.first_difference = missingTick(hands, i, tick);
+        for (std::size_t hand = 0; hand < hands.size() && !report.first_difference; ++hand)
+            report.first_difference =
+                ofHand(hand, compare(hands[hand][i], tick::makeRecord(tick, readings[hand], outputs[hand])));
         ++report.ticks;
     }
     report.state_hash = scenes.hash();

@@ -33,5 +33,9 @@ struct ReplayReport {
 ReplayReport replay(const scene::Scene& scene, std::span<const TickRecord> records);
 /// The same for scenes that were rendered one after the other.
 ReplayReport replay(std::span<const tick::SceneTurn> turns, std::span<const TickRecord> records);
+/// The same for scenes of several hands: the records of each, in the order of the scene. A column of another hand than
+/// the first is named with its number, as "hand 2: force_N[0]".
+/// @pre `hands` has as many as each scene
+ReplayReport replayHands(std::span<const tick::SceneTurn> turns, std::span<const std::vector<TickRecord>> hands);
 
 }  // namespace passung::replay

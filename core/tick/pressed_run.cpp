@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/surface/nearest_faces.h"
@@ -34,14 +35,29 @@ Vec3 wayToContact(const Pose& X_WG, ClosedFormMemory& memory) {
     return -(best.gap + kPressed) * best.normal.stableNormalized();
 }
 
+/// The same among triangles.
+Vec3 wayToSurface(const HandModel& model) {
+    double least = std::numeric_limits<double>::infinity();
+    Vec3 normal = Vec3::UnitX();
+    const auto look = [&](const geometry::ClusterTree& obstacle, const Pose& X_WO) {
+        const auto nearest = surface::nearestFaces(*model.held_surface, obstacle, X_WO.inverse() * model.X_WG_start);
+        if (nearest.distance >= least) return;
+        least = nearest.distance;
+        normal = X_WO.q * nearest.n;
+    };
+    if (model.still_surface != nullptr) look(*model.still_surface, Pose{});
+    for (const std::uint32_t i : model.moving) {
+        const Body& body = model.bodies[model.obstacles[i].body];
+        look(*body.surface, body.X_WP_start);
+    }
+    return -(least + kPressed) * normal;
+}
+
 /// The motion of the held part that ends pressed into the nearest obstacle.
 Vec3 wayToContact(const HandModel& model, HandState& state) {
     if (model.obstacles.empty()) return Vec3(0.02, 0.0, 0.0);
     if (model.hasClosedForm()) return wayToContact(model.X_WG_start, state);
-    if (model.hasSurfaces()) {
-        const auto nearest = surface::nearestFaces(*model.held_surface, *model.still_surface, model.X_WG_start);
-        return -(nearest.distance + kPressed) * nearest.n;
-    }
+    if (model.hasSurfaces()) return wayToSurface(model);
     state.scratch.clear();
     const contact::QueryAnswer answer =
         queryObstacles(model, state, model.X_WG_start, {.search_below = 1.0}, state.workspace, state.scratch);
@@ -51,6 +67,7 @@ Vec3 wayToContact(const HandModel& model, HandState& state) {
 /// Poses are those of the held part: the registration has nothing to do.
 scene::Scene unregistered(scene::Scene scene) {
     scene.spec.registration = scene::Registration{};
+    for (scene::HandSpec& hand : scene.spec.other_hands) hand.registration = scene::Registration{};
     return scene;
 }
 
@@ -61,7 +78,9 @@ PressedRun::PressedRun(const scene::Scene& scene)
     states_.push_back(makeState(models_[0]));
     way_ = wayToContact(models_[0].hands.front(), states_[0].hands.front());
     aside_ = way_.unitOrthogonal();
-    states_[0].hands.front().engaged = true;
+    for (HandState& hand : states_[0].hands) hand.engaged = true;
+    for (const HandModel& hand : models_[0].hands) readings_.push_back({.X_BD = hand.X_WG_start});
+    outputs_.resize(readings_.size());
 }
 
 PressedRun::~PressedRun() = default;
@@ -75,7 +94,9 @@ DeviceReading PressedRun::readingAt(int i) const noexcept {
 }
 
 TickOutput PressedRun::step(const DeviceReading& reading, const StageWatch* watch) noexcept {
-    return tick::step(models_[0], states_[0], reading, watch);
+    readings_.front() = reading;
+    tick::step(models_[0], states_[0], readings_, outputs_, watch);
+    return outputs_.front();
 }
 
 }  // namespace passung::tick

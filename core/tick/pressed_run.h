@@ -7,9 +7,9 @@
 
 namespace passung::tick {
 
-/// Ticks in which the held part of a scene is pressed two millimetres into the nearest obstacle and slides on it, to
-/// measure what they cost. The start gate is open, and the registration has nothing to do. Without obstacles the way
-/// leads two centimetres along x.
+/// Ticks in which the first hand's part of a scene is pressed two millimetres into the nearest obstacle and slides on
+/// it, to measure what they cost; other hands rest where they start. The start gates are open, and the registrations
+/// have nothing to do. Without obstacles the way leads two centimetres along x.
 class PressedRun {
 public:
     static constexpr int kApproachTicks = 500;  // until it is pressed
@@ -20,14 +20,16 @@ public:
     PressedRun(const PressedRun&) = delete;
     PressedRun& operator=(const PressedRun&) = delete;
 
-    /// What the device reads in tick `i`, counted from 0. rt-safe.
+    /// What the first hand's device reads in tick `i`, counted from 0. rt-safe.
     DeviceReading readingAt(int i) const noexcept;
-    /// One tick. rt-safe.
+    /// One tick, what it gives the first hand. rt-safe.
     TickOutput step(const DeviceReading& reading, const StageWatch* watch = nullptr) noexcept;
 
 private:
     SceneModels models_;             // of the one scene
     std::vector<TickState> states_;  // its one
+    std::vector<DeviceReading> readings_;
+    std::vector<TickOutput> outputs_;
     Pose X_WG_start_;
     Vec3 way_, aside_;  // to the pressed pose [m]; unit, square to it
 };

@@ -35,7 +35,17 @@ std::size_t SceneModels::size() const noexcept { return models_.size(); }
 
 const TickModel& SceneModels::operator[](std::size_t i) const noexcept { return models_[i]; }
 
-std::span<const Stage> SceneModels::stages(std::size_t i) const noexcept { return models_[i].hands.front().stages; }
+std::vector<Stage> SceneModels::stages(std::size_t i) const {
+    std::vector<Stage> all = models_[i].hands.front().stages;
+    for (const HandModel& hand : models_[i].hands) {
+        auto place = all.begin();
+        for (const Stage& stage : hand.stages) {
+            const auto known = std::find_if(all.begin(), all.end(), [&](const Stage& s) { return s.run == stage.run; });
+            place = (known != all.end() ? known : all.insert(place, stage)) + 1;
+        }
+    }
+    return all;
+}
 
 std::size_t SceneModels::memoryBytes(std::size_t i) const noexcept {
     std::size_t bytes = 0;

@@ -30,8 +30,8 @@ public:
     std::size_t size() const noexcept;
     /// @pre `i` < size()
     const TickModel& operator[](std::size_t i) const noexcept;
-    /// Those of the scene number `i`, in the order of the tick. @pre `i` < size()
-    std::span<const Stage> stages(std::size_t i) const noexcept;
+    /// Those of the scene number `i`, in the order of the tick; of several hands each once. @pre `i` < size()
+    std::vector<Stage> stages(std::size_t i) const;
     /// Of the surfaces and smooth solids that scene number `i` computes contact from [bytes]; fields and points are its
     /// parts'. @pre `i` < size()
     std::size_t memoryBytes(std::size_t i) const noexcept;

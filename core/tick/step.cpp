@@ -67,7 +67,7 @@ std::size_t runStages(const HandModel& model, HandState& state, TickFrame& frame
         if (sensing && !stage.senses) break;
         if (!state.engaged && !stage.before_start) continue;
         stage.run(model, state, frame);
-        if (watch != nullptr) watch->after(watch->context, i);
+        if (watch != nullptr) watch->after(watch->context, stage);
     }
     return i;
 }

@@ -25,9 +25,10 @@ struct TickOutput {
     Pose X_WG;        // proxy of the held part
 };
 
-/// Who is told after every stage of a tick that it has run, to measure what it costs. @pre `after` is rt-safe.
+/// Who is told after every stage of a tick that it has run for a hand, to measure what it costs. @pre `after` is
+/// rt-safe.
 struct StageWatch {
-    void (*after)(void* context, std::size_t stage) noexcept;  // `stage`: place in the hand's list
+    void (*after)(void* context, const Stage& stage) noexcept;
     void* context;
 };
 

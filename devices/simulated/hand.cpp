@@ -53,7 +53,7 @@ const char* phaseName(HandPhase phase) noexcept {
 }
 
 Hand::Hand(const HandParams& params, const VisibleTask& task, const HandRegistration& registration, std::uint64_t seed)
-    : Arm(params, task, registration, seed) {
+    : Arm(params, task, registration, seed), X_WTarget_(task.X_WTarget) {
     look();
 }
 
@@ -63,7 +63,12 @@ void Hand::look() noexcept {
     const Vec3 shift(params_.lateral_error * perception_.normal(), params_.lateral_error * perception_.normal(),
                      params_.depth_error * perception_.normal());
     const Vec3 tilt(params_.tilt_error * perception_.normal(), params_.tilt_error * perception_.normal(), 0.0);
-    X_WM_ = task_.X_WTarget * Pose{rotationFromVector(tilt), shift};
+    X_TM_ = {rotationFromVector(tilt), shift};
+    believe();
+}
+
+void Hand::believe() noexcept {
+    X_WM_ = X_WTarget_ * X_TM_;
     const Vec3 axis = X_WM_.q * Vec3::UnitZ();
     const Quat align = rotationBetween(task_.X_WHeldStart.q * Vec3::UnitZ(), axis);
     q_goal_ = (align * task_.X_WHeldStart.q).normalized();
@@ -308,6 +313,10 @@ void Hand::hold(const Percept& percept) noexcept {
 }
 
 void Hand::choose(const Percept& percept) noexcept {
+    if (task_.target_hand && percept.sees) {
+        X_WTarget_ = percept.X_WHeld[*task_.target_hand];
+        believe();
+    }
     switch (phase_) {
         case HandPhase::ToStart:
             return toStart();

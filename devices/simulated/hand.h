@@ -39,6 +39,7 @@ private:
     void enter(HandPhase phase) noexcept;
     void startReach(HandPhase phase, const Pose& to, double duration) noexcept;
     void look() noexcept;
+    void believe() noexcept;
     Pose aboveMouth() const noexcept;
 
     void toStart() noexcept;
@@ -70,6 +71,8 @@ private:
     HandPhase phase_ = HandPhase::ToStart;
 
     // belief about the mouth M and movement relative to it
+    Pose X_WTarget_;  // as drawn
+    Pose X_TM_;       // how wrongly it was looked at
     Pose X_WM_;
     Quat q_goal_;                 // the part's orientation along the believed axis
     Vec3 p_MP_ = Vec3::Zero();    // intended tip in M [m]

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -25,6 +27,9 @@ struct FollowGoal {
     double force = 2.0;        // [N] with which to press
 };
 
+/// The held part is to stay where it starts.
+struct HoldGoal {};
+
 /// What the display shows of the task and does not change during a trial: where things are drawn, which need not be
 /// where they are touched. Poses of the held part and of the target: a bore's mouth (its axis +z points out of it), or
 /// what is to be felt. Without a goal the held part is to be inserted.
@@ -32,7 +37,8 @@ struct VisibleTask {
     Pose X_WHeldStart;
     Pose X_WTarget;
     double insertion_depth = 0.020;  // [m], > 0
-    std::variant<std::monostate, CompareGoal, PlaceGoal, FollowGoal> goal = {};
+    std::variant<std::monostate, CompareGoal, PlaceGoal, FollowGoal, HoldGoal> goal = {};
+    std::optional<std::size_t> target_hand = {};  // that holds the target, which then moves; none: it rests
 };
 
 /// How the handle maps to the held part: X_WH = X_WB · scale(X_BD) · X_DH, the scale acting on the position.

@@ -49,6 +49,7 @@ Percept HandSenses::percept() const noexcept {
         if (sight.arrived > now_ - visual_delay_ticks_) continue;
         percept.sees = true;
         percept.X_WSeen = sight.image.X_WShown;
+        percept.X_WHeld = sight.image.X_WHeld;
         percept.go = sight.image.running;
         break;
     }

@@ -12,11 +12,12 @@ namespace passung::simulated {
 
 /// What the person knows at one moment, all of it late.
 struct Percept {
-    Pose X_WFelt;        // where the own posture says the held part is
-    Wrench F_felt;       // on the hand, about the handle's origin, world axes
-    bool sees = false;   // an image has arrived
-    Pose X_WSeen;        // the held part as drawn
-    bool go = false;     // the trial has visibly started
+    Pose X_WFelt;                                 // where the own posture says the held part is
+    Wrench F_felt;                                // on the hand, about the handle's origin, world axes
+    bool sees = false;                            // an image has arrived
+    Pose X_WSeen;                                 // the held part as drawn
+    std::array<Pose, scene::kMostHands> X_WHeld;  // each hand's, DisplayedImage::X_WHeld
+    bool go = false;                              // the trial has visibly started
     double cue = 0.0;    // contact as colour and vibration tell of it, from 0 (they do not) to 1
     bool knock = false;  // an impact is heard
 };

@@ -3,6 +3,7 @@
 #include "devices/simulated/compare_hand.h"
 #include "devices/simulated/follow_hand.h"
 #include "devices/simulated/hand.h"
+#include "devices/simulated/hold_hand.h"
 #include "devices/simulated/place_hand.h"
 
 namespace passung::simulated {
@@ -15,6 +16,8 @@ std::unique_ptr<TaskHand> makeHand(const HandParams& params, const VisibleTask& 
         return std::make_unique<PlaceHand>(params, task, registration, seed);
     if (std::holds_alternative<FollowGoal>(task.goal))
         return std::make_unique<FollowHand>(params, task, registration, seed);
+    if (std::holds_alternative<HoldGoal>(task.goal))
+        return std::make_unique<HoldHand>(params, task, registration, seed);
     return std::make_unique<Hand>(params, task, registration, seed);
 }
 

@@ -1,9 +1,12 @@
 #include "study/run/loop_apparatus.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <thread>
 
+#include "core/base/random.h"
 #include "core/scene/contact_geometry.h"
 #include "devices/simulated/resting_device.h"
 #include "devices/simulated/simulated_device.h"
@@ -20,20 +23,32 @@ namespace {
 
 constexpr std::size_t kRingRecords = 8192;  // eight seconds: a writer that stalls for longer shows in the data
 
-/// Of each scene in turn: its obstacles, then what none pushed.
+/// Of each scene in turn and each of its hands: its obstacles, then what none pushed.
 std::vector<session::ContactEnergy> contactEnergy(std::span<const scene::Scene> scenes,
                                                   std::span<const tick::PairAccount> pairs) {
     std::vector<session::ContactEnergy> energy;
     for (const scene::Scene& scene : scenes) {
-        for (std::size_t i = 0; i < scene.spec.parts.size(); ++i)
-            if (i != scene.held) energy.push_back({.obstacle = scene.spec.parts[i].name});
-        energy.emplace_back();
+        const scene::SceneSpec& spec = scene.spec;
+        for (std::size_t hand = 0; hand < spec.handCount(); ++hand) {
+            const std::string name = spec.hand(hand).name;
+            for (std::size_t i = 0; i < spec.parts.size(); ++i)
+                if (i != spec.heldBy(hand)) energy.push_back({.obstacle = spec.parts[i].name, .hand = name});
+            energy.push_back({.obstacle = "", .hand = name});
+        }
     }
     for (std::size_t i = 0; i < energy.size(); ++i) {
         energy[i].taken_in_J = pairs[i].taken_in;
         energy[i].least_J = pairs[i].least;
     }
     return energy;
+}
+
+/// What the loop asks of the hands.
+template <class Hands>
+std::vector<loop::HandPort> portsOf(const Hands& hands) {
+    std::vector<loop::HandPort> ports;
+    for (const auto& hand : hands) ports.push_back({hand.held.device.get(), hand.ring.get()});
+    return ports;
 }
 
 }  // namespace
@@ -44,13 +59,12 @@ std::vector<session::StageNote> stageNotes(std::span<const tick::Stage> stages) 
     return notes;
 }
 
-LoopApparatus::Run::Run(BuiltScenes built, HeldDevice device, const plan::Condition& condition,
+LoopApparatus::Run::Run(BuiltScenes built, std::vector<Hand> of_scene, const plan::Condition& condition,
                         std::span<loop::ScreenRing* const> screens, bool timed)
     : scenes(std::move(built)),
-      held(std::move(device)),
-      cues(session::cueSettings(condition.cues), held.person, held.device->pushesHand()),
-      ring(kRingRecords),
-      cycle(scenes.turns, *held.device, ring, condition.shown == plan::ShownPose::Proxy, screens, &cues, timed) {}
+      hands(std::move(of_scene)),
+      cues(session::cueSettings(condition.cues), hands.front().held.person, hands.front().held.device->pushesHand()),
+      cycle(scenes.turns, portsOf(hands), condition.shown == plan::ShownPose::Proxy, screens, &cues, timed) {}
 
 LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock,
                              Performer* performer, const ImportLimits& import_limits, BuildWatch told)
@@ -77,18 +91,16 @@ void LoopApparatus::passTo(const person::SimulatedPerson& person) {
 
 Result<std::vector<session::StageNote>> LoopApparatus::prepare(const plan::Condition& condition, std::uint64_t seed,
                                                                std::int64_t trials_before) {
-    const simulated::DeviceParams* preset = simulated::findPreset(condition.device);
-    if (preset == nullptr)
-        return Error{.message = "no such device preset", .key = "device.preset", .value = condition.device};
     started_ns_ = periods_ = 0;
     engaged_at_.reset();
     if (performer_ != nullptr) performer_->prepares(condition, trials_before, seed);
     auto scenes = build(session::renderedScenes(condition, seed));
     if (!scenes) return scenes.errors();
-    HeldDevice held = makeDevice(*preset, condition, seed, trials_before);
-    description_ = held.device->description();
+    auto hands = makeHands(condition, seed, trials_before);
+    if (!hands) return hands.errors();
+    description_ = hands->front().held.device->description();
     auto run =
-        std::make_unique<Run>(std::move(*scenes), std::move(held), condition,
+        std::make_unique<Run>(std::move(*scenes), std::move(*hands), condition,
                               performer_ == nullptr ? std::span<loop::ScreenRing* const>() : performer_->screens(),
                               clock_ == Clock::RealTime || performer_ != nullptr);
     {
@@ -115,6 +127,42 @@ Result<BuiltScenes> LoopApparatus::build(const std::vector<session::RenderedScen
     } catch (const BuildCancelled& cancelled) {
         return Error{.message = cancelled.what()};
     }
+}
+
+Result<std::vector<LoopApparatus::Hand>> LoopApparatus::makeHands(const plan::Condition& condition, std::uint64_t seed,
+                                                                  std::int64_t trials_before) const {
+    std::vector<Hand> hands;
+    for (std::size_t i = 0; i < condition.scene.handCount(); ++i) {
+        const std::string& name = i == 0 ? condition.device : condition.other_devices.at(i - 1);
+        const simulated::DeviceParams* preset = simulated::findPreset(name);
+        if (preset == nullptr) return Error{.message = "no such device preset", .key = "device.preset", .value = name};
+        hands.push_back({i == 0 ? makeDevice(*preset, condition, seed, trials_before)
+                                : makeOtherDevice(*preset, condition, i, seed, trials_before),
+                         std::make_unique<loop::RecordRing>(kRingRecords)});
+    }
+    return hands;
+}
+
+/// Held by the simulated person's other hand; by nobody where a person takes part, who has one device.
+LoopApparatus::HeldDevice LoopApparatus::makeOtherDevice(const simulated::DeviceParams& preset,
+                                                         const plan::Condition& condition, std::size_t hand,
+                                                         std::uint64_t seed, std::int64_t trials_before) const {
+    const scene::Registration r = condition.scene.hand(hand).registration;
+    const simulated::HandRegistration registration{r.X_WB, r.scale, r.X_DH};
+    const simulated::VisibleTask task = holdingTask(condition, hand);
+    HeldDevice held;
+    const bool simulated = performer_ == nullptr || performer_->kind() == plan::ParticipantKind::Simulated;
+    if (!simulated || condition.timed_by != plan::TimedBy::Program) {
+        held.device =
+            std::make_unique<simulated::RestingDevice>(preset, registration.handleFromPart(task.X_WHeldStart));
+        return held;
+    }
+    auto device =
+        std::make_unique<simulated::SimulatedDevice>(preset, simulatedHand(person_, trials_before), task, registration,
+                                                     fnv1a64(fmt::format("hand {} {}", hand, seed)));
+    held.person = device.get();
+    held.device = std::move(device);
+    return held;
 }
 
 LoopApparatus::HeldDevice LoopApparatus::makeDevice(const simulated::DeviceParams& preset,
@@ -180,12 +228,16 @@ void LoopApparatus::advance(std::int64_t ticks) {
 }
 
 std::size_t LoopApparatus::takeRecords(std::span<TickRecord> into) {
-    const std::size_t count = run_->ring.take(into);
+    const std::size_t count = run_->hands.front().ring->take(into);
     for (const TickRecord& record : into.first(count)) {
         periods_ += record.periods;
         if (!engaged_at_ && (record.status & kEngaged) != 0) engaged_at_ = periods_;
     }
     return count;
+}
+
+std::size_t LoopApparatus::takeRecordsOf(std::size_t hand, std::span<TickRecord> into) {
+    return run_->hands.at(hand).ring->take(into);
 }
 
 void LoopApparatus::halt() {
@@ -221,7 +273,7 @@ session::LoopHealth LoopApparatus::stop() {
     health.processor_p99_us = processor.quantileMicroseconds(0.99);
     health.processor_p999_us = processor.quantileMicroseconds(0.999);
     health.processor_max_us = processor.maxMicroseconds();
-    health.dropped_records = run_->ring.dropped();
+    for (const Hand& hand : run_->hands) health.dropped_records += hand.ring->dropped();
     health.histogram = timing.octaves();
     health.state_hash = run_->cycle.stateHash();
     health.contact_energy = contactEnergy(run_->scenes.scenes, run_->cycle.pairs());
@@ -230,8 +282,9 @@ session::LoopHealth LoopApparatus::stop() {
     return health;
 }
 
-bool LoopApparatus::measureOverlaps(std::span<const TickRecord> trial, std::span<measures::TickOverlap> ticks) {
-    return overlap_.measure(run_->scenes, trial, ticks);
+bool LoopApparatus::measureOverlaps(std::span<const TickRecord> trial, std::span<const std::vector<TickRecord>> others,
+                                    std::span<measures::TickOverlap> ticks) {
+    return overlap_.measure(run_->scenes, trial, others, ticks);
 }
 
 /// Of the trial's time; of the attempt's where it did not start or the program does not see it start.

@@ -3,6 +3,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "core/loop/haptic_loop.h"
 #include "devices/simulated/hand_params.h"
@@ -38,8 +39,10 @@ public:
     void start() override;
     void advance(std::int64_t ticks) override;
     std::size_t takeRecords(std::span<TickRecord> into) override;
+    std::size_t takeRecordsOf(std::size_t hand, std::span<TickRecord> into) override;
     session::LoopHealth stop() override;
-    bool measureOverlaps(std::span<const TickRecord> trial, std::span<measures::TickOverlap> ticks) override;
+    bool measureOverlaps(std::span<const TickRecord> trial, std::span<const std::vector<TickRecord>> others,
+                         std::span<measures::TickOverlap> ticks) override;
     void halt() override;
     void rearm() override;
 
@@ -49,16 +52,21 @@ private:
         simulated::SimulatedDevice* person = nullptr;  // who holds it; null: nobody simulated
     };
 
+    /// A hand's device and what it records.
+    struct Hand {
+        HeldDevice held;
+        std::unique_ptr<loop::RecordRing> ring;
+    };
+
     /// Everything of one attempt; members are destroyed in reverse order, the thread first.
     struct Run {
         BuiltScenes scenes;
-        HeldDevice held;
+        std::vector<Hand> hands;
         CueDelivery cues;
-        loop::RecordRing ring;
         loop::HapticCycle cycle;
         std::unique_ptr<loop::RealTimeThread> thread;
 
-        Run(BuiltScenes built, HeldDevice device, const plan::Condition& condition,
+        Run(BuiltScenes built, std::vector<Hand> of_scene, const plan::Condition& condition,
             std::span<loop::ScreenRing* const> screens, bool timed);
     };
 
@@ -66,6 +74,10 @@ private:
     Result<BuiltScenes> build(const std::vector<session::RenderedScene>& scenes);
     HeldDevice makeDevice(const simulated::DeviceParams& preset, const plan::Condition& condition, std::uint64_t seed,
                           std::int64_t trials_before) const;
+    Result<std::vector<Hand>> makeHands(const plan::Condition& condition, std::uint64_t seed,
+                                        std::int64_t trials_before) const;
+    HeldDevice makeOtherDevice(const simulated::DeviceParams& preset, const plan::Condition& condition,
+                               std::size_t hand, std::uint64_t seed, std::int64_t trials_before) const;
     session::Delivered delivered(const std::optional<session::Presentation>& presentation) const;
 
     DeviceDescription described_, description_;  // of the device itself; as the newest attempt had it

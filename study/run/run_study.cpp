@@ -179,6 +179,8 @@ private:
         if (measured()) start.host = hostText();
         start.timing_measured = measured();
         start.numerics = tick::kNumerics;
+        for (const plan::Condition& condition : plan_->conditions)
+            start.hands = std::max(start.hands, condition.scene.handCount());
         return start;
     }
 

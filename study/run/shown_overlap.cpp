@@ -15,19 +15,46 @@ constexpr double kIgnored = measures::kLeastOverlap;  // of a depth [m]
 constexpr std::size_t kMostPieces = 800'000;          // of a trial: a fifth of a second
 constexpr std::size_t kMostPiecesOfTick = 20'000;     // of surfaces
 
+/// Records of the other hands, tick by tick.
+class OtherHands {
+public:
+    explicit OtherHands(std::span<const std::vector<TickRecord>> hands) : hands_(hands), at_(hands.size()) {}
+
+    /// Their records of `tick`, or the last ones before it. @pre `tick` rises
+    std::vector<const TickRecord*> next(std::int64_t tick) {
+        std::vector<const TickRecord*> records;
+        for (std::size_t i = 0; i < hands_.size(); ++i) {
+            while (at_[i] + 1 < hands_[i].size() && hands_[i][at_[i] + 1].tick <= tick) ++at_[i];
+            if (!hands_[i].empty()) records.push_back(&hands_[i][at_[i]]);
+        }
+        return records;
+    }
+
+private:
+    std::span<const std::vector<TickRecord>> hands_;
+    std::vector<std::size_t> at_;
+};
+
+bool areEngaged(const TickRecord& record, std::span<const TickRecord* const> others) {
+    return (record.status & kEngaged) != 0 && std::all_of(others.begin(), others.end(), [](const TickRecord* other) {
+               return (other->status & kEngaged) != 0;
+           });
+}
+
 /// Which scene rendered each record: the turns as in tick::SceneSequence, from records alone.
 class TurnOf {
 public:
     explicit TurnOf(std::span<const tick::SceneTurn> turns) : turns_(turns) {}
 
-    std::size_t next(const TickRecord& record) {
+    /// `engaged`: all hands in this record's tick.
+    std::size_t next(const TickRecord& record, bool engaged) {
         if (engaged_) rendered_ += record.periods;
         if (engaged_ && current_ + 1 < turns_.size() && rendered_ >= turns_[current_].periods) {
             ++current_;
             engaged_ = false;
             rendered_ = 0;
         }
-        engaged_ = engaged_ || (record.status & kEngaged) != 0;
+        engaged_ = engaged_ || engaged;
         return current_;
     }
 
@@ -47,7 +74,7 @@ Pose shownPose(const TickRecord& record) {
 }  // namespace
 
 bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord> trial,
-                           std::span<measures::TickOverlap> ticks) {
+                           std::span<const std::vector<TickRecord>> others, std::span<measures::TickOverlap> ticks) {
     std::vector<truth::SceneOverlap> of_scenes;
     for (const scene::Scene& scene : scenes.scenes) of_scenes.emplace_back(scene, bodies_);
     if (std::none_of(of_scenes.begin(), of_scenes.end(), [](const auto& scene) { return scene.hasObstacles(); }))
@@ -55,15 +82,20 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
     struct Shown {
         Pose X_WG;
         std::size_t scene;
+        std::vector<Pose> X_WOthers;
     };
     std::map<std::int64_t, Shown> shown;
     for (const measures::TickOverlap& tick : ticks) shown[tick.tick] = {};
     TurnOf turn(scenes.turns);
+    OtherHands other_hands(others);
     auto judged = shown.begin();
     for (const TickRecord& record : trial) {
-        const std::size_t scene = turn.next(record);
+        const std::vector<const TickRecord*> beside = other_hands.next(record.tick);
+        const std::size_t scene = turn.next(record, areEngaged(record, beside));
         while (judged != shown.end() && judged->first < record.tick) ++judged;
-        if (judged != shown.end() && judged->first == record.tick) judged->second = {shownPose(record), scene};
+        if (judged == shown.end() || judged->first != record.tick) continue;
+        judged->second = {shownPose(record), scene, {}};
+        for (const TickRecord* other : beside) judged->second.X_WOthers.push_back(shownPose(*other));
     }
     // Those that are likely the deepest first, should the work not suffice for all.
     std::vector<measures::TickOverlap*> order;
@@ -74,6 +106,8 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
     std::size_t left = kMostPieces;
     for (measures::TickOverlap* tick : order) {
         const Shown& there = shown.at(tick->tick);
+        for (std::size_t i = 0; i < there.X_WOthers.size(); ++i)
+            of_scenes[there.scene].place(scenes.scenes[there.scene].spec.heldBy(i + 1), there.X_WOthers[i]);
         const truth::Overlap found =
             of_scenes[there.scene].at(there.X_WG, {.tolerance = kTolerance,
                                                    .share = kShare,

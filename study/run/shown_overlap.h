@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "analysis/truth/exact_overlap.h"
 #include "core/base/tick_record.h"
@@ -14,9 +15,10 @@ namespace passung::run {
 class ShownOverlap {
 public:
     /// Fills in depth and bound of `ticks`. `trial`: records of one attempt from its start tick on, from which follows
-    /// which of the scenes a tick belongs to. The work is bounded, by counts and not by time: the same records give the
-    /// same. False: no scene has an obstacle.
-    bool measure(const BuiltScenes& scenes, std::span<const TickRecord> trial, std::span<measures::TickOverlap> ticks);
+    /// which of the scenes a tick belongs to; `others`: of its other hands, whose parts are obstacles that move. The
+    /// work is bounded, by counts and not by time: the same records give the same. False: no scene has an obstacle.
+    bool measure(const BuiltScenes& scenes, std::span<const TickRecord> trial,
+                 std::span<const std::vector<TickRecord>> others, std::span<measures::TickOverlap> ticks);
 
 private:
     truth::OverlapBodies bodies_;

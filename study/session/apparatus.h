@@ -21,6 +21,7 @@ struct ContactEnergy {
     std::string obstacle;     // its part's name; empty: what no obstacle pushed
     double taken_in_J = 0.0;  // at the end
     double least_J = 0.0;     // at any tick, ≤ 0
+    std::string hand = {};    // that holds the part; empty: the first
 };
 
 /// What a window gave the participant during one attempt. The age of a picture: from the reading of the device for the
@@ -90,18 +91,26 @@ public:
     /// Lets `ticks` more ticks happen: computes them in virtual time, waits for them in real time.
     virtual void advance(std::int64_t ticks) = 0;
 
-    /// Takes the oldest records out of the ring; call until it returns 0. Consecutive ticks unless dropped.
+    /// Takes the oldest records of the first hand out of the ring; call until it returns 0. Consecutive ticks unless
+    /// dropped.
     virtual std::size_t takeRecords(std::span<TickRecord> into) = 0;
+
+    /// The same of another hand of the condition's scene, `hand` from 1.
+    virtual std::size_t takeRecordsOf(std::size_t hand, std::span<TickRecord> into) {
+        static_cast<void>(hand), static_cast<void>(into);
+        return 0;
+    }
 
     /// Stops the loop with a zero wrench and says how it went.
     virtual LoopHealth stop() = 0;
 
     /// Measures by exact geometry how deep the held part and the obstacles reached into each other at these ticks of
     /// the attempt that stop() ended, as it was shown, and fills in depth and bound. `trial`: its records from the
-    /// start tick on. False: nothing can be measured. The same records give the same; it takes no longer than a pause
-    /// between trials bears.
-    virtual bool measureOverlaps(std::span<const TickRecord> trial, std::span<measures::TickOverlap> ticks) {
-        static_cast<void>(trial), static_cast<void>(ticks);
+    /// start tick on; `others`: those of the other hands. False: nothing can be measured. The same records give the
+    /// same; it takes no longer than a pause between trials bears.
+    virtual bool measureOverlaps(std::span<const TickRecord> trial, std::span<const std::vector<TickRecord>> others,
+                                 std::span<measures::TickOverlap> ticks) {
+        static_cast<void>(trial), static_cast<void>(others), static_cast<void>(ticks);
         return false;
     }
 

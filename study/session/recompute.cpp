@@ -1,5 +1,6 @@
 #include "study/session/recompute.h"
 
+#include "study/session/hands_view.h"
 #include "study/session/rendered_scenes.h"
 #include "study/session/secondary.h"
 #include "study/session/trial_course.h"
@@ -20,8 +21,11 @@ void sayAgain(TrialCourse& course, const StoredEnd& stored, std::int64_t time) {
 
 }  // namespace
 
-Result<Judgement> judgeAgain(const plan::Condition& condition, std::span<const TickRecord> records,
+Result<Judgement> judgeAgain(const plan::Condition& condition, std::span<const std::vector<TickRecord>> hands,
                              const StoredEnd& stored) {
+    const HandsView view(condition);
+    const std::vector<TickRecord>& records = hands.front();
+    const auto others = hands.subspan(1);
     const auto X_WT = targetPose(condition);
     if (!X_WT) return X_WT.errors();
     TrialCourse course(condition.task, *X_WT, stored.seed, condition.timed_by);
@@ -35,13 +39,14 @@ Result<Judgement> judgeAgain(const plan::Condition& condition, std::span<const T
         if (secondary) secondary->follow(record);
         TrialCourse next = course;
         sayAgain(next, stored, time);
-        next.follow(record, events);
+        const TickRecord judged = view.of(record, others);
+        next.follow(judged, events);
         // Whoever aborts an attempt does it before the tick that would have followed.
         const bool from_outside =
             time >= stored.end_time && stored.outcome == Outcome::Aborted && next.state() != TrialState::Aborted;
         if (from_outside) break;
         course = std::move(next);
-        if (course.started()) of_trial.push_back(record);
+        if (course.started()) of_trial.push_back(judged);
         if (course.ended()) break;
     }
     if (!course.ended()) {

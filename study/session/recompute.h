@@ -28,8 +28,9 @@ struct StoredEnd {
     std::vector<measures::TickOverlap> overlaps = {};
 };
 
-/// Judges recorded ticks once more, as the session did while they came.
-Result<Judgement> judgeAgain(const plan::Condition& condition, std::span<const TickRecord> records,
+/// Judges recorded ticks once more, as the session did while they came. `hands`: those of each hand of the condition's
+/// scene.
+Result<Judgement> judgeAgain(const plan::Condition& condition, std::span<const std::vector<TickRecord>> hands,
                              const StoredEnd& stored);
 
 }  // namespace passung::session

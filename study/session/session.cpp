@@ -151,7 +151,9 @@ void Session::beginTrial() {
     const auto id = sink_.startAttempt(start);
     if (!id) return fail("start attempt", id.errors());
     ++past_[agenda_.next()].attempts;
-    InTrial attempt{*id, &condition, TrialCourse(condition.task, *X_WT, start.seed, condition.timed_by), {}, {}};
+    InTrial attempt{*id, &condition, TrialCourse(condition.task, *X_WT, start.seed, condition.timed_by),
+                    HandsView(condition)};
+    attempt.others.resize(attempt.view.otherHands());
     if (condition.secondary.any()) attempt.secondary.emplace(detectionSettings(condition.secondary), start.seed);
     if (setup_.timer != nullptr && condition.timed_by == plan::TimedBy::Experimenter)
         setup_.timer->begin(condition, start.seed, start.trial_index);
@@ -186,11 +188,24 @@ std::size_t Session::takeRecords() {
     std::size_t total = 0;
     while (const std::size_t count = apparatus_.takeRecords(buffer)) {
         const std::span<const TickRecord> records = std::span(buffer).first(count);
-        sink_.appendRecords(attempt().id, records);
+        sink_.appendRecords(attempt().id, 0, records);
+        takeOtherHands();
         judge(records);
         total += count;
     }
     return total;
+}
+
+/// They are there when the first hand's are.
+void Session::takeOtherHands() {
+    std::array<TickRecord, kTakeAtOnce> buffer;
+    for (std::size_t i = 0; i < attempt().others.size(); ++i) {
+        while (const std::size_t count = apparatus_.takeRecordsOf(i + 1, buffer)) {
+            const std::span<const TickRecord> records = std::span(buffer).first(count);
+            sink_.appendRecords(attempt().id, i + 1, records);
+            attempt().others[i].insert(attempt().others[i].end(), records.begin(), records.end());
+        }
+    }
 }
 
 void Session::judge(std::span<const TickRecord> records) {
@@ -201,7 +216,7 @@ void Session::judge(std::span<const TickRecord> records) {
         attempt().next_tick = record.tick + 1;
         if (attempt().secondary) attempt().secondary->follow(record);
         if (attempt().course.ended()) continue;
-        attempt().course.follow(record, events);
+        attempt().course.follow(attempt().view.of(record, attempt().others), events);
         if (attempt().course.started()) attempt().records.push_back(record);
     }
     appendEvents(events);
@@ -285,10 +300,13 @@ AttemptEnd Session::describeEnd(LoopHealth health) {
     end.outcome = context.outcome;
     if (context.watched) {
         std::vector<measures::TickOverlap> overlaps = measures::ticksToJudge(attempt().records, context);
-        if (!overlaps.empty() && apparatus_.measureOverlaps(attempt().records, overlaps)) context.overlaps = overlaps;
+        if (!overlaps.empty() && apparatus_.measureOverlaps(attempt().records, attempt().others, overlaps))
+            context.overlaps = overlaps;
     }
     end.overlaps = context.overlaps;
-    end.measures = measures::computeMeasures(attempt().records, context);
+    std::vector<TickRecord> judged;
+    for (const TickRecord& record : attempt().records) judged.push_back(attempt().view.of(record, attempt().others));
+    end.measures = measures::computeMeasures(judged, context);
     end.timing_measured = setup_.timing_measured;
 
     health.dropped_records = std::max(health.dropped_records, attempt().missing_ticks);

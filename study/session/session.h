@@ -13,6 +13,7 @@
 #include "study/measures/detection.h"
 #include "study/session/apparatus.h"
 #include "study/session/command.h"
+#include "study/session/hands_view.h"
 #include "study/session/instruction_course.h"
 #include "study/session/questionnaire_course.h"
 #include "study/session/session_event.h"
@@ -103,8 +104,10 @@ private:
         AttemptId id;
         const plan::Condition* condition;
         TrialCourse course;
-        std::vector<TickRecord> records;  // of the running trial, for its measures
-        measures::PeriodClock clock;
+        HandsView view;
+        std::vector<TickRecord> records = {};              // of the first hand in the running trial, for its measures
+        std::vector<std::vector<TickRecord>> others = {};  // of the other hands, since the attempt began
+        measures::PeriodClock clock = {};
         std::int64_t next_tick = 0;
         std::int64_t missing_ticks = 0;
         int silent_polls = 0;
@@ -151,6 +154,7 @@ private:
     void watchTrial();
     bool asksQuestionnaire();
     std::size_t takeRecords();
+    void takeOtherHands();
     void judge(std::span<const TickRecord> records);
     void finishTrial(std::optional<Verdict> verdict = {});  // none: as the protocol says
     Verdict judgeByProtocol(const AttemptEnd& end);

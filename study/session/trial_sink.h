@@ -76,7 +76,8 @@ class TrialSink {
 public:
     virtual ~TrialSink() = default;
     virtual Result<AttemptId> startAttempt(const AttemptStart& start) = 0;
-    virtual void appendRecords(AttemptId attempt, std::span<const TickRecord> records) = 0;
+    /// `hand`: of the condition's scene, whose records they are.
+    virtual void appendRecords(AttemptId attempt, std::size_t hand, std::span<const TickRecord> records) = 0;
     virtual void appendEvent(const Event& event) = 0;
     virtual Result<Done> finishAttempt(AttemptId attempt, const AttemptEnd& end) = 0;
     virtual Result<Done> storeQuestionnaire(const QuestionnaireRun& run) = 0;

@@ -46,11 +46,20 @@ void printShapes(const scene::SceneSpec& spec) {
     }
 }
 
+/// Which hand holds what, where there are several.
+void printHands(const scene::SceneSpec& spec) {
+    if (spec.handCount() < 2) return;
+    for (std::size_t i = 0; i < spec.handCount(); ++i)
+        fmt::print("  {:<22}holds {}\n", i == 0 ? "the first hand" : "hand " + spec.hand(i).name,
+                   spec.parts[spec.heldBy(i)].name);
+}
+
 Result<Done> printStages(const scene::SceneSpec& spec, scene::PartCache& cache, ProgressLine& progress) {
     const auto scene = scene::buildScene(spec, cache);
     progress.show("");
     if (!scene) return scene.errors();
     printShapes(spec);
+    printHands(spec);
     const scene::GeometryChoice choice = scene::geometryOf(spec);
     fmt::print("  {:<22}{}: {}\n", "geometry of contact", scene::geometryName(choice.geometry), choice.reason);
     fmt::print("  {:<22}{:>10}{:>10}  {}\n", "stage of the tick", "median µs", "p99 µs", "why it runs");

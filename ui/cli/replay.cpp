@@ -42,15 +42,6 @@ public:
                 nameOf(attempt), attempt.numerics, tick::kNumerics, attempt.app_version);
             return Verdict::NotComparable;
         }
-        const auto records = reader_.records(attempt.attempt_id);
-        if (!records) {
-            fmt::print("{}: DAMAGED: {}\n", nameOf(attempt), records.errors().front().message);
-            return Verdict::Damaged;
-        }
-        if (records->empty()) {
-            fmt::print("{}: NOT PROVEN: no tick of it is recorded ({})\n", nameOf(attempt), attempt.outcome);
-            return Verdict::NotProven;
-        }
         auto plan = plans_.plan(attempt.protocol_sha256);
         if (!plan) return plan.errors();
         const auto& conditions = (*plan)->conditions;
@@ -61,11 +52,24 @@ public:
                          .key = "condition",
                          .value = attempt.presented_condition};
         }
+        std::vector<std::vector<TickRecord>> hands;
+        for (std::size_t i = 0; i < condition->scene.handCount(); ++i) {
+            auto records = reader_.records(attempt.attempt_id, i);
+            if (!records) {
+                fmt::print("{}: DAMAGED: {}\n", nameOf(attempt), records.errors().front().message);
+                return Verdict::Damaged;
+            }
+            hands.push_back(*std::move(records));
+        }
+        if (hands.front().empty()) {
+            fmt::print("{}: NOT PROVEN: no tick of it is recorded ({})\n", nameOf(attempt), attempt.outcome);
+            return Verdict::NotProven;
+        }
         const auto scenes = run::buildScenes(session::renderedScenes(*condition, attempt.seed), parts_);
         if (!scenes) return scenes.errors();
-        const auto again = compareMeasures(attempt, *condition, *records);
+        const auto again = compareMeasures(attempt, *condition, hands);
         if (!again) return again.errors();
-        return tell(attempt, replay::replay(scenes->turns, *records), *again);
+        return tell(attempt, replay::replayHands(scenes->turns, hands), *again);
     }
 
 private:
@@ -82,13 +86,13 @@ private:
 
     /// Bits count: the formulas are exact functions of what is stored.
     Result<MeasuresAgain> compareMeasures(const store::AttemptRow& attempt, const plan::Condition& condition,
-                                          const std::vector<TickRecord>& records) const {
+                                          const std::vector<std::vector<TickRecord>>& hands) const {
         const auto outcome = measures::outcomeNamed(attempt.outcome);
         if (!outcome || !attempt.end_ns) return MeasuresAgain{};  // it did not end: nothing was measured
         session::StoredEnd end{*outcome, (*attempt.end_ns - attempt.start_ns) / kTickNanoseconds, {}, attempt.seed};
         end.overlaps = attempt.overlaps;
         if (attempt.trial_ns) end.start_time = (*attempt.trial_ns - attempt.start_ns) / kTickNanoseconds;
-        const auto again = session::judgeAgain(condition, records, end);
+        const auto again = session::judgeAgain(condition, hands, end);
         if (!again) return again.errors();
         if (again->outcome != *outcome)
             return MeasuresAgain{fmt::format("outcome: stored {}, from the ticks {}", attempt.outcome,

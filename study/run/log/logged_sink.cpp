@@ -47,8 +47,8 @@ Result<session::AttemptId> LoggedSink::startAttempt(const session::AttemptStart&
     return attempt;
 }
 
-void LoggedSink::appendRecords(session::AttemptId attempt, std::span<const TickRecord> records) {
-    sink_.appendRecords(attempt, records);
+void LoggedSink::appendRecords(session::AttemptId attempt, std::size_t hand, std::span<const TickRecord> records) {
+    sink_.appendRecords(attempt, hand, records);
 }
 
 void LoggedSink::appendEvent(const session::Event& event) {

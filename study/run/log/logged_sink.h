@@ -13,7 +13,7 @@ public:
     LoggedSink(session::TrialSink& sink, StudyLog* log) : sink_(sink), log_(log) {}
 
     Result<session::AttemptId> startAttempt(const session::AttemptStart& start) override;
-    void appendRecords(session::AttemptId attempt, std::span<const TickRecord> records) override;
+    void appendRecords(session::AttemptId attempt, std::size_t hand, std::span<const TickRecord> records) override;
     void appendEvent(const session::Event& event) override;
     Result<Done> finishAttempt(session::AttemptId attempt, const session::AttemptEnd& end) override;
     Result<Done> storeQuestionnaire(const session::QuestionnaireRun& run) override;

@@ -83,6 +83,10 @@ Result<HandPath> handPath(const plan::Condition& condition, scene::PartCache& pa
                           const std::function<void(double share)>& report) {
     if (condition.timed_by != plan::TimedBy::Program)
         return Error{.message = "its trials are not done with the device", .key = "condition", .value = condition.name};
+    if (condition.scene.handCount() > 1)
+        return Error{.message = "has more than one hand: what accuracy costs is measured with one",
+                     .key = "condition",
+                     .value = condition.name};
     if (simulated::findPreset(condition.device) == nullptr)
         return Error{.message = "no such device preset", .key = "device.preset", .value = condition.device};
     const auto X_WT = session::targetPose(condition);

@@ -34,10 +34,11 @@ std::int64_t timeOfAsking() {
     return std::max<std::int64_t>(least, 0);
 }
 
-/// Times of the stages of the ticks that count, tick by tick, all stages of a tick in a row [ns].
+/// Times of the stages of the ticks that count, tick by tick, all stages of a tick in a row, each over all hands [ns].
+/// How the hands' parts push each other is worked out before the first stage that moves any, and counts to that.
 class StageTimes {
 public:
-    explicit StageTimes(std::size_t stages) : last_tick_(stages) {}
+    explicit StageTimes(std::span<const tick::Stage> stages) : stages_(stages), last_tick_(stages.size()) {}
 
     /// One tick of the loop's own walk; true if parts touched.
     bool step(tick::PressedRun& run, const DeviceReading& reading) {
@@ -51,18 +52,21 @@ public:
     const std::vector<std::int64_t>& all() const { return all_; }
 
 private:
-    static void after(void* context, std::size_t stage) noexcept {
+    static void after(void* context, const tick::Stage& stage) noexcept {
         auto& self = *static_cast<StageTimes*>(context);
-        self.last_tick_[stage] = std::max<std::int64_t>(processorTime() - self.last_ - self.asking_, 0);
+        const std::int64_t took = std::max<std::int64_t>(processorTime() - self.last_ - self.asking_, 0);
+        for (std::size_t i = 0; i < self.stages_.size(); ++i)
+            if (self.stages_[i].run == stage.run) self.last_tick_[i] += took;
         self.last_ = processorTime();
     }
 
+    std::span<const tick::Stage> stages_;
     std::vector<std::int64_t> last_tick_, all_;
     std::int64_t last_ = 0, asking_ = timeOfAsking();
 };
 
 /// The times of one run; `contact`: of ticks in contact only.
-std::vector<std::int64_t> timesOfRun(const scene::Scene& scene, std::size_t stages, bool contact) {
+std::vector<std::int64_t> timesOfRun(const scene::Scene& scene, std::span<const tick::Stage> stages, bool contact) {
     constexpr int kApproachTicks = tick::PressedRun::kApproachTicks;
     tick::PressedRun run(scene);
     StageTimes times(stages);
@@ -77,7 +81,7 @@ std::vector<std::int64_t> timesOfRun(const scene::Scene& scene, std::size_t stag
 }
 
 /// The least of equal runs, time by time.
-std::vector<std::int64_t> leastTimes(const scene::Scene& scene, std::size_t stages, bool contact) {
+std::vector<std::int64_t> leastTimes(const scene::Scene& scene, std::span<const tick::Stage> stages, bool contact) {
     std::vector<std::int64_t> least = timesOfRun(scene, stages, contact);
     for (int run = 1; run < TickCost::kRuns && !least.empty(); ++run) {
         const std::vector<std::int64_t> again = timesOfRun(scene, stages, contact);
@@ -132,13 +136,13 @@ std::vector<std::vector<const plan::Condition*>> costGroups(const plan::StudyPla
 
 TickCost measureTick(const scene::Scene& scene) {
     const tick::SceneModels models(scene);
-    const std::span<const tick::Stage> stages = models.stages(0);
+    const std::vector<tick::Stage> stages = models.stages(0);
     TickCost cost;
     cost.in_contact = scene.parts.size() > 1;
-    std::vector<std::int64_t> times = leastTimes(scene, stages.size(), cost.in_contact);
+    std::vector<std::int64_t> times = leastTimes(scene, stages, cost.in_contact);
     if (times.empty()) {
         cost.in_contact = false;
-        times = leastTimes(scene, stages.size(), false);
+        times = leastTimes(scene, stages, false);
     }
     const std::size_t ticks = stages.empty() ? 0 : times.size() / stages.size();
     cost.ticks = static_cast<int>(ticks);

@@ -329,15 +329,16 @@ Result<std::vector<QuestionnaireRunRow>> StoreReader::questionnaireRuns() const 
     return guarded(path_, [&] { return readQuestionnaireRuns(*database_); });
 }
 
-Result<std::vector<TickRecord>> StoreReader::records(std::int64_t attempt_id) const {
+Result<std::vector<TickRecord>> StoreReader::records(std::int64_t attempt_id, std::size_t hand) const {
     return guarded(path_, [&] {
         std::vector<TickRecord> records;
         const auto require = [&](const Result<Done>& done) {
             if (!done)
                 throw std::runtime_error("attempt " + std::to_string(attempt_id) + ": " + done.errors()[0].message);
         };
-        for (const Chunk& chunk : readChunks(*database_, attempt_id, "tick", unpackTicks))
+        for (const Chunk& chunk : readChunks(*database_, attempt_id, tickStreamName(hand).c_str(), unpackTicks))
             require(decodeTicks(chunk, records));
+        if (hand > 0) return records;
         for (const Chunk& chunk : readChunks(*database_, attempt_id, "tick_timing", unpackTiming))
             require(decodeTiming(chunk, records));
         return records;

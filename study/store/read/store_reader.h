@@ -65,7 +65,8 @@ public:
 
     /// The attempt's ticks, ascending; gaps are ticks that were dropped. Every chunk's checksum is verified.
     /// duration_ns is 0 where it was not measured.
-    Result<std::vector<TickRecord>> records(std::int64_t attempt_id) const;
+    /// `hand`: of the condition's scene, from 0. Times are known of the first one's.
+    Result<std::vector<TickRecord>> records(std::int64_t attempt_id, std::size_t hand = 0) const;
 
 private:
     StoreReader(std::string path, std::unique_ptr<Database> database);

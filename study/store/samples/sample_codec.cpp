@@ -211,6 +211,18 @@ void decode(const Layout& layout, const Chunk& chunk, std::span<TickRecord> reco
 
 }  // namespace
 
+namespace {
+
+constexpr std::string_view kOtherHand = "tick_hand_";
+
+}  // namespace
+
+std::string tickStreamName(std::size_t hand) {
+    return hand == 0 ? "tick" : std::string(kOtherHand) + std::to_string(hand + 1);
+}
+
+bool isTickStream(std::string_view name) { return name == "tick" || name.starts_with(kOtherHand); }
+
 const std::vector<Channel>& tickChannels() { return tickLayout().channels; }
 const std::vector<Channel>& timingChannels() { return timingLayout().channels; }
 

@@ -26,7 +26,12 @@ struct Channel {
     std::size_t width() const { return type == "float64" || type == "int64" ? 8 : 4; }  // [bytes]
 };
 
-/// Columns of the stream "tick", in the order of the blob.
+/// Name of the stream of a hand's ticks: "tick" of the first, "tick_hand_2" and so on of others. `hand`: from 0.
+std::string tickStreamName(std::size_t hand);
+/// Tells whether a stream of this name has ticks of a hand.
+bool isTickStream(std::string_view name);
+
+/// Columns of the streams of ticks, in the order of the blob.
 const std::vector<Channel>& tickChannels();
 /// Columns of the stream "tick_timing": measured computing times, only where a real clock ran.
 const std::vector<Channel>& timingChannels();

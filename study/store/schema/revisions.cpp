@@ -215,6 +215,10 @@ CREATE TABLE exact_overlap(
     PRIMARY KEY(attempt_id, tick)) STRICT, WITHOUT ROWID;
 )sql";
 
+constexpr const char* kRevision18 = R"sql(
+ALTER TABLE contact_energy ADD COLUMN hand TEXT;
+)sql";
+
 const std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kFirstSchema, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -239,6 +243,7 @@ const std::array kRevisions = {
     // Chunks of samples and of times have a column more, which a reader from before takes for damage.
     Revision{16, "The gap that was proven at each tick, the processor's time beside the wall clock's", kRevision16, 16},
     Revision{17, "True overlaps at judged ticks of each attempt", kRevision17, 16},
+    Revision{18, "Energy of further hands", kRevision18, 16},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

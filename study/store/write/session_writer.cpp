@@ -151,7 +151,8 @@ Result<session::AttemptId> SessionWriter::startAttempt(const session::AttemptSta
         return attempt_id;
     });
     if (!id) return id.errors();
-    open_ = OpenAttempt{session::AttemptId{*id}, start.trial_index, start.start_ns, {}, {}};
+    open_ = OpenAttempt{session::AttemptId{*id}, start.trial_index, start.start_ns,
+                        std::vector<HandRecords>(rows_.tick_stream_ids.size())};
     return open_->id;
 }
 
@@ -163,14 +164,15 @@ void SessionWriter::insertChunk(const Database& database, std::int64_t stream_id
               Named{"data", std::span<const std::byte>(chunk.data)});
 }
 
-void SessionWriter::insertChunks(const Database& database, std::int64_t attempt_id, std::int64_t start_ns,
-                                 measures::PeriodClock clock, std::span<const TickRecord> records) {
+void SessionWriter::insertChunks(const Database& database, std::int64_t attempt_id, std::size_t hand,
+                                 std::int64_t start_ns, measures::PeriodClock clock,
+                                 std::span<const TickRecord> records) {
     while (!records.empty()) {
         const std::size_t count = consecutiveTicks(records);
         const auto run = records.first(count);
         const std::int64_t t0_ns = start_ns + clock.at(run.front()) * kTickNanoseconds;
-        insertChunk(database, rows_.tick_stream_id, next_chunk_, attempt_id, t0_ns, packTicks(encodeTicks(run)));
-        if (rows_.timing_stream_id) {
+        insertChunk(database, rows_.tick_stream_ids[hand], next_chunk_, attempt_id, t0_ns, packTicks(encodeTicks(run)));
+        if (hand == 0 && rows_.timing_stream_id) {  // the hands of a tick are computed together
             insertChunk(database, *rows_.timing_stream_id, next_chunk_, attempt_id, t0_ns,
                         packTiming(encodeTiming(run)));
         }
@@ -180,12 +182,12 @@ void SessionWriter::insertChunks(const Database& database, std::int64_t attempt_
     }
 }
 
-void SessionWriter::appendRecords(session::AttemptId attempt, std::span<const TickRecord> records) {
+void SessionWriter::appendRecords(session::AttemptId attempt, std::size_t hand, std::span<const TickRecord> records) {
     if (!open_ || open_->id != attempt) {
         postGuarded([](const Database&) { throw std::runtime_error("records for an attempt that is not open"); });
         return;
     }
-    std::vector<TickRecord>& pending = open_->pending;
+    auto& [pending, clock] = open_->hands.at(hand);
     pending.insert(pending.end(), records.begin(), records.end());
     std::size_t ready = 0;
     for (;;) {
@@ -197,12 +199,12 @@ void SessionWriter::appendRecords(session::AttemptId attempt, std::span<const Ti
     if (ready == 0) return;
     std::vector<TickRecord> chunk(pending.begin(), pending.begin() + static_cast<std::ptrdiff_t>(ready));
     pending.erase(pending.begin(), pending.begin() + static_cast<std::ptrdiff_t>(ready));
-    const measures::PeriodClock before = open_->clock;
-    for (const TickRecord& record : chunk) open_->clock.at(record);
+    const measures::PeriodClock before = clock;
+    for (const TickRecord& record : chunk) clock.at(record);
     postGuarded(
-        [this, attempt, start_ns = open_->start_ns, before, chunk = std::move(chunk)](const Database& database) {
+        [this, attempt, hand, start_ns = open_->start_ns, before, chunk = std::move(chunk)](const Database& database) {
             Transaction transaction(database, Durability::Normal);
-            insertChunks(database, static_cast<std::int64_t>(attempt), start_ns, before, chunk);
+            insertChunks(database, static_cast<std::int64_t>(attempt), hand, start_ns, before, chunk);
             transaction.commit();
         });
 }
@@ -218,7 +220,9 @@ void SessionWriter::appendEvent(const session::Event& event) {
 void SessionWriter::storeEnd(const Database& database, const OpenAttempt& attempt, const session::AttemptEnd& end) {
     const auto attempt_id = static_cast<std::int64_t>(attempt.id);
     Transaction transaction(database, Durability::Full);
-    insertChunks(database, attempt_id, attempt.start_ns, attempt.clock, attempt.pending);
+    for (std::size_t hand = 0; hand < attempt.hands.size(); ++hand)
+        insertChunks(database, attempt_id, hand, attempt.start_ns, attempt.hands[hand].clock,
+                     attempt.hands[hand].pending);
     database
         .prepare(
             "UPDATE attempt SET end_ns=?, outcome=?, valid=?, invalid_reason=?, state_hash=?, timing_measured=? "

@@ -25,7 +25,7 @@ public:
     struct Rows {
         std::string session_id;
         std::int64_t segment_id = 0;
-        std::int64_t tick_stream_id = 0;
+        std::vector<std::int64_t> tick_stream_ids;     // of each hand
         std::optional<std::int64_t> timing_stream_id;  // only where computing times are measured
     };
 
@@ -33,7 +33,7 @@ public:
     ~SessionWriter() override;
 
     Result<session::AttemptId> startAttempt(const session::AttemptStart& start) override;
-    void appendRecords(session::AttemptId attempt, std::span<const TickRecord> records) override;
+    void appendRecords(session::AttemptId attempt, std::size_t hand, std::span<const TickRecord> records) override;
     void appendEvent(const session::Event& event) override;
     Result<Done> finishAttempt(session::AttemptId attempt, const session::AttemptEnd& end) override;
     Result<Done> storeQuestionnaire(const session::QuestionnaireRun& run) override;
@@ -44,16 +44,19 @@ public:
     Result<Done> finishSession(bool complete, std::int64_t end_ns) override;
 
 private:
+    struct HandRecords {
+        std::vector<TickRecord> pending;  // not yet handed to the writer thread
+        measures::PeriodClock clock;      // up to the last record that was handed over
+    };
     struct OpenAttempt {
         session::AttemptId id{};
         std::int64_t trial_index = 0;
         std::int64_t start_ns = 0;
-        std::vector<TickRecord> pending;  // not yet handed to the writer thread
-        measures::PeriodClock clock;      // up to the last record that was handed over
+        std::vector<HandRecords> hands;
     };
 
     // in the writer thread; `clock` stands at the record before the first one
-    void insertChunks(const Database& database, std::int64_t attempt_id, std::int64_t start_ns,
+    void insertChunks(const Database& database, std::int64_t attempt_id, std::size_t hand, std::int64_t start_ns,
                       measures::PeriodClock clock, std::span<const TickRecord> records);
     void insertChunk(const Database& database, std::int64_t stream_id, std::int64_t chunk_no, std::int64_t attempt_id,
                      std::int64_t t0_ns, const Chunk& chunk);

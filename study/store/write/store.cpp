@@ -136,8 +136,10 @@ SessionWriter::Rows insertSegment(const Database& database, const SessionStart& 
         .bind(start.session_id, options.app_version, nullIfEmpty(start.host), device, start.mono_zero_ns,
               start.clock.at(0), UtcClock(start.clock).stamp(begin_ns).utc)
         .run();
-    SessionWriter::Rows rows{start.session_id, database.lastRowId(), 0, std::nullopt};
-    rows.tick_stream_id = insertStream(database, rows.segment_id, "tick", start.numerics, tickChannels());
+    SessionWriter::Rows rows{start.session_id, database.lastRowId(), {}, std::nullopt};
+    for (std::size_t hand = 0; hand < start.hands; ++hand)
+        rows.tick_stream_ids.push_back(
+            insertStream(database, rows.segment_id, tickStreamName(hand).c_str(), start.numerics, tickChannels()));
     if (start.timing_measured) {
         rows.timing_stream_id =
             insertStream(database, rows.segment_id, "tick_timing", start.numerics, timingChannels());

@@ -49,6 +49,7 @@ struct SessionStart {
     std::int64_t mono_zero_ns = 0;
     bool timing_measured = false;  // a real clock runs: store every tick's computing time too
     int numerics = 0;              // core/tick/numerics.h: which arithmetic the ticks follow
+    std::size_t hands = 1;         // most of any condition's scene
 };
 
 /// A study's database, open for writing by this process alone. Every function may be called from any thread and

@@ -70,6 +70,53 @@ TEST(HapticCycle, RecordsEveryTickAndShowsSixtyImagesASecond) {
     EXPECT_EQ(device.last.force.norm(), 0.0);
 }
 
+TEST(HapticCycle, GivesEachOfTwoHandsItsOwnDeviceAndRing) {
+    // Truth: closed form. The ball is pressed 2 mm into a table in another hand, two springs of 1000 N/m: each hand
+    // feels 1 N, in opposite directions; a released cycle commands nothing. Each person sees both parts.
+    auto spec = test::scene(shape::Sphere{0.02}, {Quat::Identity(), Vec3(0, 0, 0.012)}, shape::Box{0.06, 0.06, 0.02},
+                            {Quat::Identity(), Vec3(0, 0, -0.01)}, scene::ContactMethod::GodObject);
+    spec.contact.geometry = scene::Geometry::ClosedForm;
+    spec.contact.stiffness = 1000;
+    spec.parts[1].held = true;
+    spec.parts[1].hand = 1;
+    spec.other_hands.push_back({spec.limits, spec.registration, spec.start_gate, "left"});
+    const test::Bench bench(spec);
+    StillDevice ball(kPressed), table({Quat::Identity(), Vec3(0, 0, -0.01)});
+    loop::RecordRing of_ball(256), of_table(256);
+    loop::ScreenRing screen(256);
+    const std::array screens{&screen};
+    const std::array hands{loop::HandPort{&ball, &of_ball}, loop::HandPort{&table, &of_table}};
+    loop::HapticCycle cycle(std::array{tick::SceneTurn{&bench.whole()}}, hands, true, screens);
+    {
+        support::RtGuard guard;
+        for (int i = 0; i < 200; ++i) cycle.run();
+        EXPECT_EQ(guard.violations(), 0) << guard.describe();
+    }
+    std::vector<TickRecord> balls(256), tables(256);
+    balls.resize(of_ball.take(balls));
+    tables.resize(of_table.take(tables));
+    ASSERT_EQ(balls.size(), 200u);
+    ASSERT_EQ(tables.size(), 200u);
+    EXPECT_EQ(tables.back().tick, 199);
+    EXPECT_NEAR(ball.last.force.z(), 1.0, 1e-3);
+    EXPECT_NEAR(table.last.force.z(), -1.0, 1e-3);
+    EXPECT_NEAR(tables.back().force_N[2], -1.0, 1e-3);
+    for (const StillDevice* device : {&ball, &table}) {
+        EXPECT_GT(device->images, 10);
+        EXPECT_NEAR(device->last_image.X_WHeld[0].p.z(), 0.009, 1e-5);
+        EXPECT_NEAR(device->last_image.X_WHeld[1].p.z(), -0.011, 1e-5);
+    }
+    EXPECT_EQ(ball.last_image.X_WShown.p, ball.last_image.X_WHeld[0].p);
+    EXPECT_EQ(table.last_image.X_WShown.p, table.last_image.X_WHeld[1].p);
+    std::vector<loop::ScreenTick> shown(256);
+    ASSERT_EQ(screen.take(shown), 200u);
+    EXPECT_NEAR(shown[199].others[0].X_WG.p.z(), -0.011, 1e-5);
+    EXPECT_NEAR(shown[199].others[0].X_WH.p.z(), -0.01, 1e-12);
+    cycle.release();
+    EXPECT_EQ(ball.last.force.norm(), 0.0);
+    EXPECT_EQ(table.last.force.norm(), 0.0);
+}
+
 TEST(HapticCycle, RecordsWhatATickTookOfTheProcessorBesideTheWallClock) {
     // Truth: closed form: a thread cannot spend more on a processor than passes on the wall, but for the two readings
     // of the wall clock inside; and what the ticks took is no more than the thread took for all.

@@ -106,6 +106,41 @@ TEST(Replayer, ReproducesEveryRecordedBitOfACoupledPenalty) {
     }
 }
 
+TEST(Replayer, ReproducesTwoHandsAndFindsWhereOneDiffers) {
+    // Truth: invariant, then planted faults: one bit of the second hand, and its last tick.
+    auto spec = pressing(scene::ContactMethod::GodObject);
+    spec.parts[1].held = true;
+    spec.parts[1].hand = 1;
+    spec.other_hands.push_back({spec.limits, spec.registration, spec.start_gate, "left"});
+    const test::Bench bench(spec);
+    Wobble first, second;
+    loop::RecordRing of_first(4096), of_second(4096);
+    const std::array hands{loop::HandPort{&first, &of_first}, loop::HandPort{&second, &of_second}};
+    const std::array turns{tick::SceneTurn{&bench.whole()}};
+    loop::HapticCycle cycle(turns, hands, true);
+    for (int i = 0; i < 1000; ++i) cycle.run(i == 500);
+    std::vector<std::vector<TickRecord>> records(2, std::vector<TickRecord>(4096));
+    records[0].resize(of_first.take(records[0]));
+    records[1].resize(of_second.take(records[1]));
+    const auto report = replay::replayHands(turns, records);
+    EXPECT_FALSE(report.first_difference) << report.first_difference->column << " at " << report.first_difference->tick;
+    EXPECT_EQ(report.state_hash, cycle.stateHash());
+    EXPECT_EQ(report.ticks, 1000);
+
+    auto changed = records;
+    changed[1][700].force_N[1] = std::nextafter(changed[1][700].force_N[1], 1e9f);
+    const auto differs = replay::replayHands(turns, changed);
+    ASSERT_TRUE(differs.first_difference);
+    EXPECT_EQ(differs.first_difference->column, "hand 2: force_N[1]");
+    EXPECT_EQ(differs.first_difference->tick, 700);
+
+    auto shorter = records;
+    shorter[1].pop_back();
+    const auto missing = replay::replayHands(turns, shorter);
+    ASSERT_TRUE(missing.first_difference);
+    EXPECT_EQ(missing.first_difference->column, "hand 2: tick");
+}
+
 TEST(Replayer, FindsOneChangedBitAndOneMissingTick) {
     // Truth: planted faults.
     test::Bench bench(pressing(scene::ContactMethod::GodObjectHeuristic));

@@ -55,7 +55,7 @@ TEST(LongSession, AnHourOfEveryChannelFitsItsDatabaseAndLosesNoRecord) {
         const auto writer = fake::beginSession(*store, "S001", trials, true);
         for (std::int64_t trial = 0; trial < trials; ++trial) {
             const auto id = require(writer->startAttempt(fake::attemptStart(trial)));
-            for (std::size_t i = 0; i < ticks; i += 20) writer->appendRecords(id, std::span(records).subspan(i, 20));
+            for (std::size_t i = 0; i < ticks; i += 20) writer->appendRecords(id, 0, std::span(records).subspan(i, 20));
             require(writer->finishAttempt(id, fake::attemptEnd(trial, ticks, true)));
         }
         require(writer->finishSession(true, seconds * 1'000'000'000));

@@ -58,7 +58,7 @@ public:
     std::vector<std::string> forms, events;
     bool full = false;
     Result<AttemptId> startAttempt(const AttemptStart&) override { return AttemptId{1}; }
-    void appendRecords(AttemptId, std::span<const TickRecord>) override {}
+    void appendRecords(AttemptId, std::size_t, std::span<const TickRecord>) override {}
     void appendEvent(const Event& event) override { events.push_back(event.event); }
     Result<Done> finishAttempt(AttemptId, const AttemptEnd&) override { return Done{}; }
     Result<Done> storeQuestionnaire(const QuestionnaireRun& run) override {

@@ -109,7 +109,7 @@ public:
         starts.push_back(start);
         return AttemptId{static_cast<std::int64_t>(starts.size())};
     }
-    void appendRecords(AttemptId attempt, std::span<const TickRecord> records) override {
+    void appendRecords(AttemptId attempt, std::size_t, std::span<const TickRecord> records) override {
         if (log_->back() != "appendRecords") log_->push_back("appendRecords");
         for (const TickRecord& record : records) ticks[attempt].push_back(record.tick);
     }

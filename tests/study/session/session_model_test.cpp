@@ -127,7 +127,7 @@ public:
         fuse_.burn();
         return AttemptId{static_cast<std::int64_t>(attempts.size())};
     }
-    void appendRecords(AttemptId, std::span<const TickRecord>) override {}
+    void appendRecords(AttemptId, std::size_t, std::span<const TickRecord>) override {}
     void appendEvent(const Event& event) override {
         fuse_.burn();
         if (event.event.starts_with("command_")) commands.push_back(event);

@@ -31,7 +31,7 @@ protected:
         StoredEnd stored{sink_.ends.front().outcome, sink_.ends.front().end_ns / kMs, {}, sink_.starts.front().seed};
         for (const Event& event : sink_.events)
             if (event.event == "trial_started") stored.start_time = event.t_ns / kMs;
-        return *judgeAgain(plan_.conditions.front(), records, stored);
+        return *judgeAgain(plan_.conditions.front(), std::array{records}, stored);
     }
     std::optional<Session> session_;
 };

@@ -198,7 +198,7 @@ inline Result<Done> writeAttempt(store::SessionWriter& writer, std::int64_t tria
     if (!id) return id.errors();
     const std::vector<TickRecord> records = makeRecords(static_cast<std::uint64_t>(trial_index), ticks);
     for (std::size_t i = 0; i < records.size(); i += 300) {
-        writer.appendRecords(*id, std::span(records).subspan(i, std::min<std::size_t>(300, records.size() - i)));
+        writer.appendRecords(*id, 0, std::span(records).subspan(i, std::min<std::size_t>(300, records.size() - i)));
     }
     writer.appendEvent({*id, trial_index * 10'000'000'000, "session", "started", "{}"});
     return writer.finishAttempt(*id, attemptEnd(trial_index, ticks, timing_measured));

@@ -44,7 +44,7 @@ std::size_t ticksOf(std::int64_t trial) { return kTicks + static_cast<std::size_
         auto writer = fake::beginSession(*store, participant, 2000);
         for (std::int64_t trial = 0; trial < std::min<std::int64_t>(kTrials, 2000); ++trial) {
             const auto id = fake::require(writer->startAttempt(fake::attemptStart(trial)));
-            writer->appendRecords(id, fake::makeRecords(static_cast<std::uint64_t>(trial), ticksOf(trial)));
+            writer->appendRecords(id, 0, fake::makeRecords(static_cast<std::uint64_t>(trial), ticksOf(trial)));
             say(Moment::AboutToEnd, trial);
             fake::require(writer->finishAttempt(id, fake::attemptEnd(trial, ticksOf(trial))));
             say(Moment::Ended, trial);

@@ -254,7 +254,7 @@ TEST(Store, DroppedTicksBeginANewChunkAndNothingIsInvented) {
         auto store = fake::openStore(path);
         auto writer = fake::beginSession(*store, "S001", 1);
         const auto id = require(writer->startAttempt(fake::attemptStart(0)));
-        writer->appendRecords(id, records);
+        writer->appendRecords(id, 0, records);
         require(writer->finishAttempt(id, fake::attemptEnd(0, 1540)));
     }
     const Database database(path, OpenMode::ReadOnly);
