@@ -13,6 +13,7 @@ View3D {
     readonly property QtObject palette3d: QtObject {
         readonly property color ground: view.scene.dark ? "#1b242c" : "#e9eef2"
         readonly property color rest: view.scene.dark ? "#8fa3b3" : "#9fb0bd"
+        readonly property color otherHeld: view.scene.dark ? "#b9a3d6" : "#a58bc2" // by another hand
         readonly property color held: view.scene.dark ? "#f0b34a" : "#e8a02c"
         readonly property color hit: "#d52e00" // the held part with the visual cue at 1
         readonly property color mark: view.scene.dark ? "#56b4e9" : "#0072b2"
@@ -71,21 +72,28 @@ View3D {
 
     Repeater3D {
         model: view.scene.parts
-        delegate: Model {
+        delegate: HandFrame {
+            id: partFrame
             required property var modelData
             required property int index
-            geometry: PartGeometry {
-                mesh: modelData.mesh
-            }
-            position: modelData.held ? view.scene.heldPosition : modelData.position
-            rotation: modelData.held ? view.scene.heldRotation : modelData.rotation
-            materials: PrincipledMaterial {
-                cullMode: modelData.twoSided ? Material.NoCulling : Material.BackFaceCulling
-                baseColor: view.flat ? view.identity(index) : modelData.held ? view.heldColor : view.palette3d.rest
-                lighting: view.flat ? PrincipledMaterial.NoLighting : PrincipledMaterial.FragmentLighting
-                roughness: modelData.held ? 0.38 : 0.5
-                metalness: 0.0
-                specularAmount: 0.4
+            scene: view.scene
+            hand: modelData.hand
+            Model {
+                geometry: PartGeometry {
+                    mesh: partFrame.modelData.mesh
+                }
+                position: partFrame.modelData.held ? view.scene.heldPosition : partFrame.modelData.position
+                rotation: partFrame.modelData.held ? view.scene.heldRotation : partFrame.modelData.rotation
+                materials: PrincipledMaterial {
+                    cullMode: partFrame.modelData.twoSided ? Material.NoCulling : Material.BackFaceCulling
+                    baseColor: view.flat ? view.identity(partFrame.index)
+                        : partFrame.modelData.held ? view.heldColor
+                        : partFrame.hand >= 0 ? view.palette3d.otherHeld : view.palette3d.rest
+                    lighting: view.flat ? PrincipledMaterial.NoLighting : PrincipledMaterial.FragmentLighting
+                    roughness: partFrame.modelData.held ? 0.38 : 0.5
+                    metalness: 0.0
+                    specularAmount: 0.4
+                }
             }
         }
     }
@@ -113,22 +121,27 @@ View3D {
 
     Repeater3D { // what the trial asks for
         model: view.scene.marks
-        delegate: Model {
+        delegate: HandFrame {
+            id: markFrame
             required property var modelData
-            // One pale image at a time.
-            visible: !view.flat && !(modelData.pale && view.scene.startMark)
-            geometry: PartGeometry {
-                mesh: modelData.mesh
-            }
-            position: modelData.position
-            rotation: modelData.rotation
-            castsShadows: false
-            opacity: modelData.pale ? 0.28 : 1
-            materials: PrincipledMaterial {
-                baseColor: view.palette3d.mark
-                lighting: PrincipledMaterial.NoLighting
-                cullMode: modelData.twoSided ? Material.NoCulling : Material.BackFaceCulling
-                alphaMode: modelData.pale ? PrincipledMaterial.Blend : PrincipledMaterial.Opaque
+            scene: view.scene
+            hand: modelData.hand
+            Model {
+                // One pale image at a time.
+                visible: !view.flat && !(markFrame.modelData.pale && view.scene.startMark)
+                geometry: PartGeometry {
+                    mesh: markFrame.modelData.mesh
+                }
+                position: markFrame.modelData.position
+                rotation: markFrame.modelData.rotation
+                castsShadows: false
+                opacity: markFrame.modelData.pale ? 0.28 : 1
+                materials: PrincipledMaterial {
+                    baseColor: view.palette3d.mark
+                    lighting: PrincipledMaterial.NoLighting
+                    cullMode: markFrame.modelData.twoSided ? Material.NoCulling : Material.BackFaceCulling
+                    alphaMode: markFrame.modelData.pale ? PrincipledMaterial.Blend : PrincipledMaterial.Opaque
+                }
             }
         }
     }

@@ -51,6 +51,14 @@ Vec3 lightFrom(const Camera& camera, const plan::View& appearance) {
     return appearance.light_from.value_or(camera.X_WC.q * Vec3(-0.55, 0.5, 0.35) + 1.3 * Vec3::UnitZ()).normalized();
 }
 
+Pose recordedPose(const TickRecord& record, plan::ShownPose which) {
+    const bool proxy = which == plan::ShownPose::Proxy;
+    const auto& p = proxy ? record.proxy_position_m : record.hand_position_m;
+    const auto& q = proxy ? record.proxy_quaternion : record.hand_quaternion;
+    const Eigen::Quaternionf rotation(q[0], q[1], q[2], q[3]);
+    return {rotation.cast<double>().normalized(), Vec3(p[0], p[1], p[2])};
+}
+
 }  // namespace
 
 double Camera::metresPerPixel(double height_px) const {
@@ -58,12 +66,12 @@ double Camera::metresPerPixel(double height_px) const {
 }
 
 Pose poseOf(const DrawnScene& scene, const TickRecord& record, plan::ShownPose which) {
-    const bool proxy = which == plan::ShownPose::Proxy;
-    const auto& p = proxy ? record.proxy_position_m : record.hand_position_m;
-    const auto& q = proxy ? record.proxy_quaternion : record.hand_quaternion;
-    const Eigen::Quaternionf rotation(q[0], q[1], q[2], q[3]);
-    return {rotation.cast<double>().normalized(), Vec3(p[0], p[1], p[2]) + scene.held_offset};
+    Pose X_W = recordedPose(record, which);
+    X_W.p += scene.held_offset;
+    return X_W;
 }
+
+Pose shownPoseOfOther(const DrawnScene& scene, const TickRecord& record) { return recordedPose(record, scene.shown); }
 
 Pose shownPose(const DrawnScene& scene, const TickRecord& record) { return poseOf(scene, record, scene.shown); }
 
@@ -128,15 +136,21 @@ Result<std::shared_ptr<const DrawnScene>> SceneArtist::draw(const plan::Conditio
     for (const scene::PartSpec& part : condition.scene.parts) {
         auto mesh = surfaceOf(part);
         if (!mesh) return mesh.errors();
-        DrawnPart drawn{*mesh, {part.X_WP.q, part.X_WP.p + part.shown_offset}, part.held};
-        if (part.name == condition.task.target) X_WTarget = drawn.X_W;
-        if (part.held) {
+        const bool held = part.held && part.hand == 0;
+        DrawnPart drawn{*mesh, {part.X_WP.q, part.X_WP.p + part.shown_offset}, held};
+        if (part.held && part.hand > 0) drawn.other_hand = part.hand - 1;
+        if (part.name == condition.task.target) {
+            X_WTarget = drawn.X_W;
+            scene->target_hand = drawn.other_hand;
+        }
+        if (held) {
             scene->held = scene->parts.size();
             scene->held_offset = part.shown_offset;
         }
         extendBy(bounds, **mesh, drawn.X_W);
         scene->parts.push_back(std::move(drawn));
     }
+    if (std::holds_alternative<plan::FreePlacementTask>(condition.task.form)) scene->target_hand.reset();
     scene->marks = marksOf(condition.task, X_WTarget, *scene);
     for (const Mark& mark : scene->marks) extendBy(bounds, *mark.mesh, mark.X_W);
     scene->floor = bounds.low.z() - kGround;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,9 +28,10 @@ struct Camera {
 };
 
 struct DrawnPart {
-    std::shared_ptr<const ShadedMesh> mesh;  // shared_ptr: scenes of a study have parts in common
-    Pose X_W;                                // as it is drawn; of the held part at the start
-    bool held = false;
+    std::shared_ptr<const ShadedMesh> mesh;      // shared_ptr: scenes of a study have parts in common
+    Pose X_W;                                    // as it is drawn; of a part in a hand at the start
+    bool held = false;                           // by the first hand
+    std::optional<std::size_t> other_hand = {};  // that holds it, among the others
 };
 
 /// What a participant sees of a condition's scene.
@@ -40,14 +43,17 @@ struct DrawnScene {
     plan::Cues cues;
     plan::View appearance;
     std::vector<Mark> marks;
-    double floor = 0.0;   // height of the ground [m]
-    double radius = 0.1;  // of everything about the camera's centre [m]
+    std::optional<std::size_t> target_hand;  // among the others: marks are where they are when its part starts
+    double floor = 0.0;                      // height of the ground [m]
+    double radius = 0.1;                     // of everything about the camera's centre [m]
     Camera camera;
     Vec3 light_from = Vec3::UnitZ();  // towards the light that casts shadows, length 1
 };
 
 /// Where either pose of the held part is drawn in a tick.
 Pose poseOf(const DrawnScene& scene, const TickRecord& record, plan::ShownPose which);
+/// Where the part of another hand is drawn in a tick of that hand.
+Pose shownPoseOfOther(const DrawnScene& scene, const TickRecord& record);
 /// Where the held part is drawn in a tick.
 Pose shownPose(const DrawnScene& scene, const TickRecord& record);
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "ui/presenter/run.h"
 
 namespace passung::presenter {
@@ -24,8 +27,9 @@ enum class ParticipantScreen {
 /// What the participant sees; nothing of it tells more than the condition lets them know.
 struct ParticipantView {
     ParticipantScreen screen = ParticipantScreen::Welcome;
-    bool scene = false;  // is drawn
-    Pose X_WHeld;        // where the held part is drawn
+    bool scene = false;           // is drawn
+    Pose X_WHeld;                 // where the held part is drawn
+    std::vector<Pose> X_WOthers;  // likewise the parts in other hands, in the order of these; empty: where they start
     bool start_mark = false;
     Pose X_WStart;
     double cue = 0.0;                                          // visual collision cue, 0 … 1
@@ -49,7 +53,8 @@ ParticipantView participantView(const Run& run, bool feels);
 
 /// A recorded tick: what the participant saw, with the force as an arrow whoever felt it, and as a ghost in the start
 /// mark's place the held part's other pose if it is another:
-/// the hand's where the proxy was drawn, the proxy's where the hand was.
-ParticipantView playbackView(const DrawnScene& scene, const TickRecord& record);
+/// the hand's where the proxy was drawn, the proxy's where the hand was. `others`: the same tick of the other hands.
+ParticipantView playbackView(const DrawnScene& scene, const TickRecord& record,
+                             std::span<const TickRecord> others = {});
 
 }  // namespace passung::presenter

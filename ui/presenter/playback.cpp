@@ -4,8 +4,9 @@
 
 namespace passung::presenter {
 
-Playback::Playback(std::vector<TickRecord> records, std::shared_ptr<const DrawnScene> scene)
-    : records_(std::move(records)), scene_(std::move(scene)) {
+Playback::Playback(std::vector<TickRecord> records, std::shared_ptr<const DrawnScene> scene,
+                   std::vector<std::vector<TickRecord>> others)
+    : records_(std::move(records)), others_(std::move(others)), scene_(std::move(scene)) {
     std::int64_t cycles = 0;  // exact, unlike a sum of times
     bool engaged = false;
     for (const TickRecord& record : records_) {
@@ -23,6 +24,16 @@ void Playback::seek(double time) {
     time_ = std::clamp(time, 0.0, length());
     const auto after = std::upper_bound(times_.begin(), times_.end(), time_);
     at_ = after == times_.begin() ? 0 : static_cast<std::size_t>(after - times_.begin()) - 1;
+}
+
+std::vector<TickRecord> Playback::others() const {
+    std::vector<TickRecord> ticks;
+    for (const std::vector<TickRecord>& records : others_) {
+        const auto later = std::upper_bound(records.begin(), records.end(), record().tick,
+                                            [](std::int64_t tick, const TickRecord& r) { return tick < r.tick; });
+        if (later != records.begin()) ticks.push_back(*(later - 1));
+    }
+    return ticks;
 }
 
 void Playback::play(bool plays) {

@@ -12,8 +12,9 @@ namespace passung::presenter {
 /// A recorded attempt that is shown once more. Times in seconds of the attempt; a missed cycle takes its time.
 class Playback {
 public:
-    /// @pre records not empty, ascending
-    Playback(std::vector<TickRecord> records, std::shared_ptr<const DrawnScene> scene);
+    /// `others`: records of the other hands. @pre records not empty, all ascending
+    Playback(std::vector<TickRecord> records, std::shared_ptr<const DrawnScene> scene,
+             std::vector<std::vector<TickRecord>> others = {});
 
     double length() const { return times_.back(); }
     double time() const { return time_; }
@@ -31,6 +32,8 @@ public:
 
     /// The newest tick at that time.
     const TickRecord& record() const { return records_[at_]; }
+    /// The same of each other hand of which ticks were recorded.
+    std::vector<TickRecord> others() const;
     const std::shared_ptr<const DrawnScene>& scene() const { return scene_; }
 
     /// The whole attempt in so many columns, the smallest and largest value of each.
@@ -43,6 +46,7 @@ private:
     std::vector<Trace::Span> columnsOf(std::size_t columns, const Value& value) const;
 
     std::vector<TickRecord> records_;
+    std::vector<std::vector<TickRecord>> others_;
     std::vector<double> times_;  // of each record
     std::shared_ptr<const DrawnScene> scene_;
     std::size_t at_ = 0;

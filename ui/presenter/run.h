@@ -22,6 +22,8 @@ public:
     void open(const plan::StudyPlan& plan);
     void take(const News& news);
     void take(std::span<const TickRecord> records);
+    /// Where the other hands' parts are drawn in the newest of these.
+    void place(std::vector<Pose> X_WOthers) { X_WOthers_ = std::move(X_WOthers); }
     /// The display has got a picture that shows this tick [ns], both on one clock.
     void see(std::int64_t began_ns, std::int64_t presented_ns);
     void checkPictures(std::int64_t now_ns);
@@ -38,6 +40,8 @@ public:
     const std::shared_ptr<const DrawnScene>& scene() const { return scene_; }
     /// The newest tick of the running attempt.
     const std::optional<TickRecord>& last() const { return last_; }
+    /// Where the other hands' parts are drawn in that tick; more than the scene has hands may be there.
+    const std::vector<Pose>& others() const { return X_WOthers_; }
     /// How the participant's window draws.
     const plan::View& appearance() const { return appearance_; }
     /// Of a pair: where it is; nothing before its first interval.
@@ -63,6 +67,7 @@ private:
     std::vector<std::string> conditions_;  // names
     std::shared_ptr<const DrawnScene> scene_;
     std::optional<TickRecord> last_;
+    std::vector<Pose> X_WOthers_;
     Trace force_, depth_;
     double time_ = 0.0;              // in the attempt [s]
     std::optional<double> started_;  // when the trial began; none: not yet

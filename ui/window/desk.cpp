@@ -138,6 +138,11 @@ void Desk::take(std::span<const loop::ScreenTick> ticks) {
     records.reserve(ticks.size());
     for (const loop::ScreenTick& tick : ticks) records.push_back(tick.record);
     run_.take(records);
+    if (ticks.empty() || !run_.scene()) return;
+    const bool proxy = run_.scene()->shown == plan::ShownPose::Proxy;
+    std::vector<Pose> X_WOthers;
+    for (const loop::HeldPart& other : ticks.back().others) X_WOthers.push_back(proxy ? other.X_WG : other.X_WH);
+    run_.place(std::move(X_WOthers));
 }
 
 /// `newest`: the tick that the windows stand in from now on, if there is one since the last call.

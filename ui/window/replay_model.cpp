@@ -36,7 +36,13 @@ Result<Read> readFrom(const std::string& database, const std::string& meshes, st
                      .value = attempt->presented_condition};
     auto scene = artist.draw(*condition, (*plan)->view);
     if (!scene) return scene.errors();
-    return std::make_shared<presenter::Playback>(*std::move(records), *std::move(scene));
+    std::vector<std::vector<TickRecord>> others;
+    for (std::size_t hand = 1; hand < condition->scene.handCount(); ++hand) {
+        auto other = reader->records(id, hand);
+        if (!other) return other.errors();
+        others.push_back(*std::move(other));
+    }
+    return std::make_shared<presenter::Playback>(*std::move(records), *std::move(scene), std::move(others));
 }
 
 }  // namespace
@@ -91,7 +97,9 @@ void ReplayModel::close() {
 
 bool ReplayModel::drawsProxy() const { return playback_ && playback_->scene()->shown == plan::ShownPose::Proxy; }
 
-void ReplayModel::refresh() { SceneModel::show(presenter::playbackView(*playback_->scene(), playback_->record())); }
+void ReplayModel::refresh() {
+    SceneModel::show(presenter::playbackView(*playback_->scene(), playback_->record(), playback_->others()));
+}
 
 void ReplayModel::seek(double time) {
     if (!playback_ || time == playback_->time()) return;

@@ -1,5 +1,8 @@
 #include "ui/window/scene_model.h"
 
+#include <algorithm>
+#include <optional>
+
 #include "ui/participant/part_geometry.h"
 
 namespace passung::window {
@@ -17,11 +20,23 @@ QQuaternion rotation(const Quat& q) {
     return {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z())};
 }
 
+QVariantMap mapOf(const Pose& X) { return {{"position", millimetres(X.p)}, {"rotation", rotation(X.q)}}; }
+
 QVariantMap modelOf(const participant::Surface& mesh, const Pose& X_W) {
-    return {{"mesh", QVariant::fromValue(mesh)},
-            {"twoSided", mesh->two_sided},
-            {"position", millimetres(X_W.p)},
-            {"rotation", rotation(X_W.q)}};
+    QVariantMap model = mapOf(X_W);
+    model.insert("mesh", QVariant::fromValue(mesh));
+    model.insert("twoSided", mesh->two_sided);
+    model.insert("hand", -1);
+    return model;
+}
+
+/// Moved by a hand, whose part starts at X_WP.
+QVariantMap modelOf(const participant::Surface& mesh, const Pose& X_W, std::optional<std::size_t> hand,
+                    const std::vector<Pose>& starts) {
+    if (!hand) return modelOf(mesh, X_W);
+    QVariantMap model = modelOf(mesh, starts[*hand].inverse() * X_W);
+    model.insert("hand", static_cast<int>(*hand));
+    return model;
 }
 
 }  // namespace
@@ -39,8 +54,14 @@ void SceneModel::show(const presenter::DrawnScene& scene) {
     ghosts_.clear();
     marks_.clear();
     std::size_t corners = 0;
+    X_WOthers_start_.clear();
     for (const presenter::DrawnPart& part : scene.parts) {
-        QVariantMap model = modelOf(part.mesh, part.X_W);
+        if (!part.other_hand) continue;
+        X_WOthers_start_.resize(std::max(X_WOthers_start_.size(), *part.other_hand + 1));
+        X_WOthers_start_[*part.other_hand] = part.X_W;
+    }
+    for (const presenter::DrawnPart& part : scene.parts) {
+        QVariantMap model = modelOf(part.mesh, part.X_W, part.other_hand, X_WOthers_start_);
         if (part.held) ghosts_.append(model);
         model.insert("held", part.held);
         parts_.append(model);
@@ -48,7 +69,7 @@ void SceneModel::show(const presenter::DrawnScene& scene) {
     }
     heavy_ = software_ && corners / 3 > kHeavy;
     for (const presenter::Mark& mark : scene.marks) {
-        QVariantMap model = modelOf(mark.mesh, mark.X_W);
+        QVariantMap model = modelOf(mark.mesh, mark.X_W, scene.target_hand, X_WOthers_start_);
         model.insert("pale", mark.pale);
         marks_.append(model);
     }
@@ -68,6 +89,13 @@ void SceneModel::show(const presenter::DrawnScene& scene) {
 void SceneModel::show(const presenter::ParticipantView& view) {
     view_ = view;
     emit frame();
+}
+
+QVariantList SceneModel::others() const {
+    QVariantList others;
+    for (std::size_t i = 0; i < X_WOthers_start_.size(); ++i)
+        others.append(mapOf(i < view_.X_WOthers.size() ? view_.X_WOthers[i] : X_WOthers_start_[i]));
+    return others;
 }
 
 QVector3D SceneModel::heldPosition() const { return millimetres(view_.X_WHeld.p); }

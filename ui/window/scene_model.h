@@ -15,7 +15,8 @@ class SceneModel : public QObject {
     Q_PROPERTY(bool software MEMBER software_ NOTIFY sceneChanged)  // no graphics card draws
     Q_PROPERTY(bool heavy MEMBER heavy_ NOTIFY sceneChanged)        // many triangles
 
-    // Lists of maps, a Model for each: "mesh", "position", "rotation" and what else it needs.
+    // Lists of maps, a Model for each: "mesh", "position", "rotation" and what else it needs. "hand": among the others,
+    // that moves it, -1 if none does; then position and rotation are in the frame of the hand's part.
     Q_PROPERTY(QVariantList parts MEMBER parts_ NOTIFY sceneChanged)
     Q_PROPERTY(QVariantList ghosts MEMBER ghosts_ NOTIFY sceneChanged)  // pale images of the held part: one, or none
     Q_PROPERTY(QVariantList marks MEMBER marks_ NOTIFY sceneChanged)
@@ -34,6 +35,8 @@ class SceneModel : public QObject {
     Q_PROPERTY(double cameraNear MEMBER camera_near_ NOTIFY sceneChanged)
     Q_PROPERTY(double cameraFar MEMBER camera_far_ NOTIFY sceneChanged)
 
+    // Parts in other hands, in the order of these: "position", "rotation".
+    Q_PROPERTY(QVariantList others READ others NOTIFY frame)
     Q_PROPERTY(QVector3D heldPosition READ heldPosition NOTIFY frame)
     Q_PROPERTY(QQuaternion heldRotation READ heldRotation NOTIFY frame)
     Q_PROPERTY(bool startMark READ startMark NOTIFY frame)
@@ -54,6 +57,7 @@ public:
     void show(const presenter::ParticipantView& view);
     const presenter::ParticipantView& view() const { return view_; }
 
+    QVariantList others() const;
     QVector3D heldPosition() const;
     QQuaternion heldRotation() const;
     bool startMark() const { return view_.start_mark; }
@@ -81,6 +85,7 @@ private:
     plan::View appearance_;
     bool software_ = false, heavy_ = false;
     QVariantList parts_, ghosts_, marks_;
+    std::vector<Pose> X_WOthers_start_;
     QVector3D ground_position_, camera_position_;
     QQuaternion camera_rotation_, light_rotation_;
     double radius_ = 100.0, camera_opening_ = 30.0, camera_near_ = 1.0, camera_far_ = 1000.0;
