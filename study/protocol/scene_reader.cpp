@@ -42,16 +42,13 @@ std::vector<scene::PartSpec> readParts(const TableReader& read, const Node& scen
     std::vector<bool> full(1 + other_hands.size());  // hands that hold a part
     for (const Node& table : read.items("part")) {
         auto part = readPartNode(table, path, units, other_hands, errors);
-        const auto report = [&](const char* key, const std::string& message) {
+        const auto report = [&](const char* key, const char* message) {
             const Node& value = *table.find(key);
             errors.push_back(
                 errorAt(value.place, fmt::format("{}.{}", read.pathOf("part"), key), valueText(value), message));
         };
         if (!part.name.empty() && !names.insert(part.name).second) report("name", "is used by another part");
-        if (part.held && full[part.hand])
-            report("held", part.hand == 0 ? std::string("only one part can be held by the first hand; others need a "
-                                                        "[[hand]] and its name")
-                                          : fmt::format("the hand {} holds another part", other_hands[part.hand - 1]));
+        if (part.held && full[part.hand]) report("held", "only one part can be held by each hand");
         if (part.held) full[part.hand] = true;
         parts.push_back(std::move(part));
     }

@@ -211,13 +211,11 @@ TEST(SceneReader, TellsWhatIsWrongWithHands) {
     const std::string left = "[[hand]]\nname = \"left\"\n";
     EXPECT_EQ(errorsOf(handScene("hand = \"right\"", left)),
               "s.toml:4:8: error: part.plate.hand: \"right\": no [[hand]] has this name; there are: left\n"
-              "s.toml:8:8: error: part.held: true: only one part can be held by the first hand; others need a "
-              "[[hand]] and its name\n"
+              "s.toml:8:8: error: part.held: true: only one part can be held by each hand\n"
               "s.toml:11:1: error: hand: left: holds no part: one needs held = true and hand = \"left\"");
     EXPECT_EQ(errorsOf(handScene("hand = \"left\"", "")),
               "s.toml:4:8: error: part.plate.hand: \"left\": the scene has no [[hand]]\n"
-              "s.toml:8:8: error: part.held: true: only one part can be held by the first hand; others need a "
-              "[[hand]] and its name");
+              "s.toml:8:8: error: part.held: true: only one part can be held by each hand");
     std::string loose = handScene("hand = \"left\"", left);
     loose.replace(loose.find("held = true"), 11, "held = false");
     EXPECT_EQ(errorsOf(loose),
