@@ -133,7 +133,8 @@ scene::MeshFile readMesh(const TableReader& read, const Node& value, double unit
 /// Number of the hand that holds the part.
 std::size_t readHand(const TableReader& read, bool held, std::span<const std::string> other_hands) {
     if (!held) read.fail("hand", "needs held = true");
-    const auto found = std::find(other_hands.begin(), other_hands.end(), read.text("hand"));
+    auto found = std::find(other_hands.begin(), other_hands.end(), read.text("hand"));
+    if (found == other_hands.end()) found = std::find(other_hands.begin(), other_hands.end(), "");  // told already
     if (found != other_hands.end()) return static_cast<std::size_t>(found - other_hands.begin()) + 1;
     read.fail("hand", other_hands.empty()
                           ? std::string("the scene has no [[hand]]")

@@ -22,12 +22,12 @@ constexpr double kDefaultRotationalStiffness = 1.0;  // [N·m/rad], without a de
 constexpr double kHardness = 10.0;                   // of a coupled penalty's contacts, per stiffness of the coupling
 constexpr double kToolShare = 0.1;                   // of a virtual tool's inertia, per the device's
 
-/// Names of the scene's hands but the first, as far as they are names.
+/// Names of the scene's hands but the first; empty where there is none, which is told elsewhere.
 std::vector<std::string> readHandNames(const TableReader& read) {
     std::vector<std::string> names;
     for (const Node& table : read.items("hand")) {
         const Node* name = table.find("name");
-        names.push_back(name != nullptr && name->kind == Node::Kind::Text ? name->text : "");
+        names.push_back(name != nullptr && name->kind == Node::Kind::Text && isName(name->text) ? name->text : "");
     }
     if (names.size() >= scene::kMostHands)
         read.fail("hand", fmt::format("must be at most {}: a scene has up to {} hands", scene::kMostHands - 1,
@@ -306,6 +306,24 @@ scene::StartGate readStartGate(const TableReader& read) {
     return gate;
 }
 
+/// What nothing is built for where parts in several hands touch.
+void checkHands(const TableReader& read, const TableReader& contact_table, const scene::SceneSpec& scene,
+                Errors& errors) {
+    if (scene.handCount() < 2) return;
+    if (scene.contact.budget_nodes > 0)
+        contact_table.fail("budget_nodes",
+                           "must be 0 with more than one hand: a look may not take several ticks where "
+                           "parts move meanwhile");
+    int rubbing = 0;
+    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+        if (!scene.parts[i].held || !(scene.parts[i].friction > 0.0) || ++rubbing < 2) continue;
+        const Node& friction = *read.items("part")[i].find("friction");
+        errors.push_back(
+            errorAt(friction.place, fmt::format("{}.{}.friction", read.pathOf("part"), scene.parts[i].name),
+                    valueText(friction), "must be 0 on all parts that are held but one: nothing rubs between hands"));
+    }
+}
+
 /// The scene's hands but the first, and their devices.
 void readOtherHands(const TableReader& read, std::span<const std::string> names, double units,
                     std::span<const DeviceDescription> devices, const TableReader& first_device,
@@ -314,7 +332,7 @@ void readOtherHands(const TableReader& read, std::span<const std::string> names,
     for (std::size_t i = 0; i < names.size(); ++i) {
         const Node& table = read.items("hand")[i];
         std::string path = read.pathOf("hand");
-        if (isName(names[i])) path += "." + names[i];
+        if (!names[i].empty()) path += "." + names[i];
         const TableReader hand_table(table, {"hand"}, path, errors);
         if (hand_table.has("name") && !known.insert(names[i]).second)
             hand_table.fail("name", "is used by another hand");
@@ -393,6 +411,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     content.accuracy_budget = readAccuracyBudget(contact_table, content.scene);
     if (const Node* budget = contact_table.node("accuracy_budget_us")) content.accuracy_place = budget->place;
     content.allow_unstable = contact_table.boolean("allow_unstable");
+    checkHands(read, contact_table, content.scene, errors);
     const auto only_device = [&] { return errors.size() == before + of_device; };
     if (only_device()) checkSizes(contact_table, content.scene, geometries);
     checkStability(device_table, contact_table, device, content.scene.contact, content.scene.hand(0));

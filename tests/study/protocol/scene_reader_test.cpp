@@ -227,6 +227,22 @@ TEST(SceneReader, TellsWhatIsWrongWithHands) {
               std::string::npos);
 }
 
+TEST(SceneReader, TellsWhatHandsCannotHaveYet) {
+    // Truth: core/scene/scene_spec.cpp refuses the same; here at its place.
+    const std::string left = "[[hand]]\nname = \"left\"\n";
+    EXPECT_NE(errorsOf(handScene("hand = \"left\"", left, "[contact]\ngeometry = \"field\"\nbudget_nodes = 9\n"))
+                  .find("s.toml:13:16: error: contact.budget_nodes: 9: must be 0 with more than one hand"),
+              std::string::npos);
+    EXPECT_NE(errorsOf(handScene("hand = \"left\"\nfriction = 0.2", left, "friction = 0.3\n"))
+                  .find("error: part.peg.friction: 0.3: must be 0 on all parts that are held but one"),
+              std::string::npos);
+    // A name that is none is told once.
+    EXPECT_EQ(
+        errorsOf(handScene("hand = \"left\"", "[[hand]]\nname = \"LEFT\"\n")),
+        "s.toml:12:8: error: hand.name: \"LEFT\": must be lower-case letters, digits and _, beginning with a letter");
+    EXPECT_EQ(errorsOf(handScene("hand = \"left\"", "[[hand]]\n")), "s.toml:11:1: error: hand.name: required");
+}
+
 TEST(SceneReader, RefusesAStiffnessThatAnotherHandsDeviceDoesNotBear) {
     // Truth: the device's stable maximum, 1000 N/m of "stick"; the scene's is that of "arm", 4000 N/m.
     const std::string device = "[device]\npreset = \"arm\"\n";
