@@ -443,10 +443,13 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
     tick_ = {};
     tick_.work = std::min(std::exchange(owed_, 0), budget_ / 2);
     chain_count_ = 0;
-    const double hand_way = X_WH_last_ ? wayBetween(Placement(*X_WH_last_), Placement(X_WH)) : 0.0;
-    X_WH_last_ = X_WH;
+    const Pose& X_hand = X_WH_told_ ? *X_WH_told_ : X_WH;
+    const bool balanced = X_hand.p != X_WH.p || X_hand.q.coeffs() != X_WH.q.coeffs();
+    const double hand_way = X_WH_last_ ? wayBetween(Placement(*X_WH_last_), Placement(X_hand)) : 0.0;
+    X_WH_last_ = X_hand;
     if (left_to_lead_ > 0.0) return lead();
-    const double others_way = std::max(hand_way, std::exchange(swept_, 0.0));
+    const double swept = std::exchange(swept_, 0.0);
+    const double others_way = X_WH_told_ ? hand_way + others_way_ : std::max(hand_way, swept);
     trust_ = hurry_ * std::max({kLeastTrust, 1.5 * hand_way, std::min(2.0 * last_way_, kFastest)});
     most_in_tick_ = overlaps_ ? kFastest : std::max(kFastest, 1.5 * others_way);
     most_held_ = std::min(most_in_tick_, std::max(kFastestHeld, 1.5 * others_way));
@@ -483,7 +486,9 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
         last_way_ = way_in_tick_;
         std::size_t kept = 0;
         for (std::size_t i = 0; i < row_count_; ++i) {
-            rows_[i].idle = rows_[i].push > 0.0 ? 0 : rows_[i].idle + 1;
+            // Who asked for a pose between the hands counts on rows that hold nothing there.
+            const bool counted = balanced && rows_[i].gapAt(bodies_[rows_[i].body].P) <= kSeen;
+            rows_[i].idle = rows_[i].push > 0.0 || counted ? 0 : rows_[i].idle + 1;
             if (rows_[i].idle <= kMostIdle) rows_[kept++] = rows_[i];
         }
         row_count_ = kept;

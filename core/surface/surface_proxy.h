@@ -95,6 +95,13 @@ public:
     /// How much work a tick may be from now on, > 0: what other hands have left. rt-safe.
     void setBudget(int budget) noexcept { budget_ = settings_.budget = budget; }
 
+    /// Where the hand itself is in the next tick, which advance() may not be asked to follow, and how far the hands
+    /// have gone that hold bodies [m]. Unless that is told, a body's own way counts as its hand's. rt-safe.
+    void setHands(const Pose& X_WH, double others_way) noexcept {
+        X_WH_told_ = X_WH;
+        others_way_ = others_way;
+    }
+
     /// Body `i` has gone to X_WB while the held part rested; whoever moved it proved that no triangles met on the
     /// way. What has to be found out about it is work of the next tick. rt-safe, bounded.
     void moveBody(std::size_t i, const Pose& X_WB) noexcept;
@@ -234,7 +241,8 @@ private:
     double swept_ = 0.0;         // the farthest that a body has moved since then, seen from the part [m]
     Vec3 lead_ = Vec3::Zero();   // the way out of it, unit, world
     double left_to_lead_ = 0.0;  // [m]
-    std::optional<Pose> X_WH_last_;
+    std::optional<Pose> X_WH_last_, X_WH_told_;
+    double others_way_ = 0.0;  // as it was told [m]
 
     // Of the tick.
     double trust_ = 0.0, way_in_tick_ = 0.0;       // [m]

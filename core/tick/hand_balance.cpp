@@ -183,6 +183,19 @@ void push(const HandModel& model, HandState& state, std::size_t obstacle, const 
     ++state.contacts_of_hands;
 }
 
+/// How far the hands have gone since the tick before, as each is told of the others.
+void tellWays(std::span<const HandModel> models, std::span<HandState> states, std::span<const Pose> X_WH) noexcept {
+    std::array<double, scene::kMostHands> way{};
+    double all = 0.0;
+    for (std::size_t h = 0; h < models.size(); ++h) {
+        const Pose &before = states[h].X_WH_before, &now = X_WH[h];
+        way[h] = (now.p - before.p).norm() + models[h].reach * rotationVector(now.q * before.q.conjugate()).norm();
+        all += way[h];
+        states[h].X_WH_before = now;
+    }
+    for (std::size_t h = 0; h < models.size(); ++h) states[h].others_way = std::max(0.0, all - way[h]);
+}
+
 void forget(HeldTarget& target) noexcept {
     for (ObstaclePush& of : target.from_hands) of = {};
     target.contacts_of_hands = 0;
@@ -200,6 +213,7 @@ Turns balanceHands(std::span<const HandModel> models, std::span<HandState> state
         forget(states[i]);
     }
     if (memory.contacts.empty()) return turns;
+    tellWays(models, states, X_WH);
     HandBalance balance(models, states, X_WH, memory);
     if (!balance.hasAny() || !balance.solve()) return turns;
     std::array<double, scene::kMostHands> gives_way{};

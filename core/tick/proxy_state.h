@@ -30,6 +30,8 @@ struct HeldTarget {
     std::vector<ObstaclePush> from_hands;  // of each obstacle, as Pushes; empty where no other hand is
     std::uint32_t contacts_of_hands = 0;   // that push so
     std::uint32_t work = 0;                // that the proxy's way may take in this tick, of what all hands have
+    Pose X_WH_before;                      // the hand in the tick before, where there are several
+    double others_way = 0.0;               // that the other hands went since then, together [m]
 };
 
 /// A look from a pose under a budget of nodes, and how far it has come (field_look.h).

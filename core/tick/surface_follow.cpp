@@ -54,6 +54,7 @@ void followOnSurface(const HandModel& model, const HandSample& hand, const HeldT
     for (std::size_t k = 0; k < model.moving.size(); ++k)
         follow.surface->moveBody(still + k, obstacles.X_WO[model.moving[k]]);
     follow.surface->setBudget(static_cast<int>(target.work));
+    if (!model.moving.empty()) follow.surface->setHands(hand.X_WH, target.others_way);
     // A spring from the old place would throw the hand across the room.
     if (hand.relocated) follow.surface->place(hand.X_WH);
     const surface::SurfaceTick& now = follow.surface->advance(target.X_WT);
