@@ -139,8 +139,10 @@ inline std::unique_ptr<store::Store> openStore(const std::string& path, const st
 
 inline std::unique_ptr<store::SessionWriter> beginSession(store::Store& store, const std::string& participant,
                                                           std::int64_t trials, bool timing_measured = false,
-                                                          const plan::StudyPlan& plan = makePlan()) {
+                                                          const plan::StudyPlan& plan = makePlan(),
+                                                          std::size_t hands = 1) {
     store::SessionStart start;
+    start.hands = hands;
     start.protocol_sha256 = require(store.importProtocol(plan));
     require(store.enrol(participant, plan::ParticipantKind::Simulated, store::UtcClock::virtualEpoch().at(0)));
     require(store.assignSlot(start.protocol_sha256, participant));

@@ -280,6 +280,38 @@ TEST(Store, ADamagedChunkIsReportedNotRead) {
     EXPECT_NE(records.errors()[0].message.find("checksum"), std::string::npos) << records.errors()[0].message;
 }
 
+TEST(Store, KeepsTheTicksOfEachHandInAStreamOfItsOwn) {
+    // Truth: invariant, bit by bit; and a planted fault in the second hand's samples alone.
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    const auto first = fake::makeRecords(1, 2500), second = fake::makeRecords(2, 2400);
+    {
+        auto store = fake::openStore(path);
+        auto writer = fake::beginSession(*store, "S001", 1, true, fake::makePlan(), 2);
+        const auto id = require(writer->startAttempt(fake::attemptStart(0)));
+        for (std::size_t i = 0; i < 2500; i += 100) {
+            writer->appendRecords(id, 0, std::span(first).subspan(i, 100));
+            if (i < 2400) writer->appendRecords(id, 1, std::span(second).subspan(i, 100));
+        }
+        require(writer->finishAttempt(id, fake::attemptEnd(0, 2500)));
+    }
+    {
+        const StoreReader reader = require(StoreReader::open(path));
+        EXPECT_TRUE(fake::sameStoredBits(require(reader.records(1)), first));
+        EXPECT_TRUE(fake::sameStoredBits(require(reader.records(1, 1)), second));
+        EXPECT_TRUE(require(reader.records(1, 2)).empty());
+        EXPECT_EQ(require(reader.records(1)).front().duration_ns, first.front().duration_ns);
+    }
+    const Database database(path, OpenMode::ReadWrite);
+    EXPECT_EQ(rows(database, "SELECT stream FROM stream ORDER BY stream_id"), "tick\ntick_hand_2\ntick_timing\n");
+    database.execute(
+        "UPDATE sample_chunk SET data = CAST(substr(data, 1, 500) || x'5A' || substr(data, 502) AS BLOB) WHERE "
+        "stream_id=(SELECT stream_id FROM stream WHERE stream='tick_hand_2')");
+    const StoreReader reader = require(StoreReader::open(path));
+    EXPECT_TRUE(fake::sameStoredBits(require(reader.records(1)), first));
+    EXPECT_FALSE(reader.records(1, 1));
+}
+
 TEST(Store, SecondWriterIsRefusedWithAClearError) {
     // Truth: invariant (one process writes)
     const fake::TempFolder folder;
