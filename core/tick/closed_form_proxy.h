@@ -68,7 +68,8 @@ inline constexpr StageOf kClosedFormProxy{
                           "as far as the shapes' faces and edges let it; no distance field, no points"
                         : "contact.method is god_object_heuristic and all pairs have a closed form: steps #1 to #4 on "
                           "the shapes' faces and edges; no distance field, no points";
-         }}};
+         },
+     .spared = contactInstead}};
 
 /// The low-pass of proxy.h. The proxy goes towards the filtered pose under the contacts, so that it costs no overlap.
 void filterInClosedForm(const HandModel& model, const HandSample& hand, const ClosedFormHold& held,

@@ -38,7 +38,11 @@ inline constexpr StageOf kCommonWay{
                     !model.moving.empty();
          },
      .reason =
-         [](const HandModel&) { return "parts in different hands move in one tick: their common way is free too"; }}};
+         [](const HandModel&) { return "parts in different hands move in one tick: their common way is free too"; },
+     .spared =
+         [](const HandModel& model) {
+             return model.moving.empty() ? "no other hand holds a part" : contactInstead(model);
+         }}};
 
 void keepCommonWayInClosedForm(const HandModel& model, const ObstaclePoses& obstacles, Proxy& proxy,
                                ClosedFormMemory& memory, Report& report) noexcept;
@@ -49,6 +53,10 @@ inline constexpr StageOf kClosedFormCommonWay{
      .cost = "where another hand's part has moved, a look at its faces and edges for every half millimetre",
      .needs = [](const HandModel& model) { return model.hasClosedForm() && !model.moving.empty(); },
      .reason =
-         [](const HandModel&) { return "parts in different hands move in one tick: their common way is free too"; }}};
+         [](const HandModel&) { return "parts in different hands move in one tick: their common way is free too"; },
+     .spared =
+         [](const HandModel& model) {
+             return model.moving.empty() ? "no other hand holds a part" : contactInstead(model);
+         }}};
 
 }  // namespace passung::tick

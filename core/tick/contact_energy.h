@@ -52,8 +52,11 @@ inline constexpr StageOf kHeldPushes{
      .parameters = "",
      .cost = "a little for each obstacle",
      .needs = [](const HandModel& model) { return model.hasProxy() && !model.moving.empty(); },
-     .reason =
-         [](const HandModel&) { return "parts in different hands may touch: what pushes them is accounted for"; }}};
+     .reason = [](const HandModel&) { return "parts in different hands may touch: what pushes them is accounted for"; },
+     .spared =
+         [](const HandModel& model) {
+             return model.moving.empty() ? "no other hand holds a part" : contactInstead(model);
+         }}};
 
 /// Books what was sent since the good sample before over the handle's motion since then. rt-safe.
 void bookPairs(EnergyAccounts& accounts, const Vec3& moved, const Vec3& turned, int ticks) noexcept;

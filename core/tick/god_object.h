@@ -91,6 +91,7 @@ inline constexpr StageOf kProxySweep{
                           "reach let it; contact.two_way: of the held part's points and of the obstacles' points"
                         : "contact.method is god_object: the proxy follows the hand as far as all contacts within "
                           "reach let it";
-         }}};
+         },
+     .spared = contactInstead}};
 
 }  // namespace passung::tick

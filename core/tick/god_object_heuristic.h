@@ -82,7 +82,8 @@ inline constexpr StageOf kProxyCorrection{
                           "points and of the obstacles' points"
                         : "contact.method is god_object_heuristic: steps #1 and #2, contacts at "
                           "the last proxy and relief of its overlap";
-         }}};
+         },
+     .spared = contactInstead}};
 
 /// #3, #4.
 void moveProxy(const HandModel& model, const HandSample& hand, const HeldTarget& target, const ObstaclePoses& obstacles,

@@ -96,11 +96,23 @@ void addStages(HandModel& model, StageList<stage...>) {
     const auto add = [&model](const StageCard& card, auto* run) {
         if (card.needs(model))
             model.stages.push_back({card.name, card.reason(model), card.senses, card.before_start, run});
+        else if (card.spared != nullptr)
+            model.spared.push_back({card.name, card.spared(model)});
     };
     (add(stage.card, runStage<stage>), ...);
 }
 
 }  // namespace
+
+const char* contactInstead(const HandModel& model) noexcept {
+    if (!model.hasObstacles()) return "the scene has no obstacle";
+    if (model.contact.method == scene::ContactMethod::Penalty)
+        return model.rendersAtHand() ? "contact.method is penalty" : "contact.method is penalty, through a tool";
+    if (model.hasClosedForm()) return "contact is computed from the shapes' closed forms";
+    if (model.hasSurfaces()) return "contact is computed from surfaces";
+    return model.contact.method == scene::ContactMethod::GodObject ? "contact.method is god_object"
+                                                                   : "contact.method is god_object_heuristic";
+}
 
 HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size_t hand) {
     const scene::SceneSpec& spec = scene.spec;

@@ -53,9 +53,10 @@ struct HandModel {
     scene::Registration registration;
     scene::StartGate start_gate;
     std::vector<Stage> stages;
-    double finest_cell = 0.0;    // of all fields [m]
-    double reach = 0.0;          // no point of the held part is farther from its origin [m]
-    double metric_radius = 0.0;  // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
+    std::vector<SparedStage> spared;  // those that the scene does without
+    double finest_cell = 0.0;         // of all fields [m]
+    double reach = 0.0;               // no point of the held part is farther from its origin [m]
+    double metric_radius = 0.0;       // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
     ProxyMargins margins;
     scene::Effects effects;
     bool record_hand_depth = true;
@@ -77,6 +78,9 @@ struct HandModel {
         return hasFieldProxy() && contact.method != scene::ContactMethod::Penalty && contact.budget_nodes > 0;
     }
 };
+
+/// What contact is computed by, for a stage that another one stands for.
+const char* contactInstead(const HandModel& model) noexcept;
 
 /// What the scene fixes for hand `hand`, and those of AllStages that it needs. `world` is the scene's and outlives the
 /// result. @pre `hand` < scene.spec.handCount()

@@ -67,8 +67,8 @@ inline constexpr StageOf kStartGate{
      .senses = true,
      .before_start = true,
      .needs = [](const HandModel& model) { return model.start_gate.hold_ticks > 0; },
-     .reason =
-         [](const HandModel&) { return "start_gate is set: contact begins when the hand holds the start pose"; }}};
+     .reason = [](const HandModel&) { return "start_gate is set: contact begins when the hand holds the start pose"; },
+     .spared = [](const HandModel&) { return "start_gate is not set: contact is there from the first tick"; }}};
 
 /// Where the held part is when the handle is at `X_BD`: X_WH = X_WB · scale(X_BD) · X_DH. rt-safe.
 Pose registeredPose(const scene::Registration& registration, const Pose& X_BD) noexcept;

@@ -38,7 +38,8 @@ inline constexpr StageOf kOutputDelay{delayOutput,
                                        .cost = "constant, and a little for each obstacle",
                                        .before_start = true,
                                        .needs = [](const HandModel& model) { return model.limits.delay_ticks > 0; },
-                                       .reason = [](const HandModel&) { return "device.delay_ticks is set"; }}};
+                                       .reason = [](const HandModel&) { return "device.delay_ticks is set"; },
+                                       .spared = [](const HandModel&) { return "device.delay_ticks is 0"; }}};
 
 /// Stage, only if the scene displays no wrench: what was computed goes nowhere; one that is not finite is left for
 /// limitOutput to tell.
@@ -51,7 +52,8 @@ inline constexpr StageOf kNoWrench{
      .before_start = true,
      .needs = [](const HandModel& model) { return !model.display_wrench; },
      .reason =
-         [](const HandModel&) { return "feedback.kinesthetic is false: contact is computed, nothing is displayed"; }}};
+         [](const HandModel&) { return "feedback.kinesthetic is false: contact is computed, nothing is displayed"; },
+     .spared = [](const HandModel&) { return "feedback.kinesthetic is true: the device displays the wrench"; }}};
 
 /// Stage, the last of every scene: the one place that a wrench leaves through.
 ///   Leaves F_D_B (what is sent) and F_H_W (what the hand then feels).

@@ -59,6 +59,7 @@ inline constexpr StageOf kPassivityController{
      .reason =
          [](const HandModel&) {
              return "effects.passivity_controller is set: a damper takes back energy that was given out";
-         }}};
+         },
+     .spared = [](const HandModel&) { return "effects.passivity_controller is not set"; }}};
 
 }  // namespace passung::tick

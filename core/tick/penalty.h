@@ -38,7 +38,8 @@ inline constexpr StageOf kContactsAtHand{
                         ? "contact.method is penalty: forces come from the overlap at the device's own pose; "
                           "contact.two_way: of the held part's points and of the obstacles' points"
                         : "contact.method is penalty: forces come from the overlap at the device's own pose";
-         }}};
+         },
+     .spared = contactInstead}};
 
 /// Penalty wrench of a manifold on the held part about `p_WO`, world axes (Sagardia 2019, 3.3; McNeely 1999). rt-safe.
 ///   p_i = max(0, -φ_i) depth, n_i the shell's inward normal, a_i area, r_i = P_i - O.

@@ -68,6 +68,7 @@ inline constexpr StageOf kPenaltyTool{
                           "contacts' penalty"
                         : "contact.coupling is quasi_static: a tool where the hand's spring and the contacts' "
                           "penalty balance";
-         }}};
+         },
+     .spared = [](const HandModel&) { return "contact.coupling is direct"; }}};
 
 }  // namespace passung::tick

@@ -173,7 +173,11 @@ inline constexpr StageOf kProxyFilter{
              return model.hasFieldProxy() && model.contact.proxy_filter > 0.0 &&
                     model.contact.method != scene::ContactMethod::Penalty;
          },
-     .reason = [](const HandModel&) { return "contact.proxy_filter_hz is set: a low-pass of the proxy in contact"; }}};
+     .reason = [](const HandModel&) { return "contact.proxy_filter_hz is set: a low-pass of the proxy in contact"; },
+     .spared =
+         [](const HandModel& model) {
+             return model.contact.proxy_filter > 0.0 ? contactInstead(model) : "contact.proxy_filter_hz is 0";
+         }}};
 
 /// The depth, the number of contacts and the lag, for the record.
 void describeProxy(const HandModel& model, const Proxy& proxy, ContactRecord& record) noexcept;

@@ -47,6 +47,15 @@ std::vector<Stage> SceneModels::stages(std::size_t i) const {
     return all;
 }
 
+std::vector<SparedStage> SceneModels::spared(std::size_t i) const {
+    const std::vector<Stage> run = stages(i);
+    std::vector<SparedStage> spared = models_[i].hands.front().spared;
+    std::erase_if(spared, [&](const SparedStage& stage) {
+        return std::any_of(run.begin(), run.end(), [&](const Stage& other) { return other.name == stage.name; });
+    });
+    return spared;
+}
+
 std::size_t SceneModels::memoryBytes(std::size_t i) const noexcept {
     std::size_t bytes = 0;
     const World& world = models_[i].world;

@@ -32,6 +32,8 @@ public:
     const TickModel& operator[](std::size_t i) const noexcept;
     /// Those of the scene number `i`, in the order of the tick; of several hands each once. @pre `i` < size()
     std::vector<Stage> stages(std::size_t i) const;
+    /// Those that scene number `i` does without, in whichever hand; a stage that one hand has is not among them.
+    std::vector<SparedStage> spared(std::size_t i) const;
     /// Of the surfaces and smooth solids that scene number `i` computes contact from [bytes]; fields and points are its
     /// parts'. @pre `i` < size()
     std::size_t memoryBytes(std::size_t i) const noexcept;

@@ -23,6 +23,8 @@ struct StageCard {
     bool before_start = false;                // runs also while the start gate is closed
     bool (*needs)(const HandModel&);          // whether a scene has what it is for
     const char* (*reason)(const HandModel&);  // why the scene has it
+    // Why a scene that does not have it can do without; null: it serves another stage, which says it.
+    const char* (*spared)(const HandModel&) = nullptr;
 };
 
 namespace declared {
@@ -55,7 +57,7 @@ inline constexpr bool kIsPart = [] {
 ///   struct Humming { double phase = 0.0; };                                               // its own state
 ///   void renderHum(const HandModel&, const HandSample&, Humming&, HandWrench&) noexcept;  // reads, owns, hands on
 ///   inline constexpr StageOf kHum{renderHum, {.name = "hum", .parameters = "effects.hum", // its card
-///                                             .cost = "constant", .needs = ..., .reason = ...}};
+///                                             .cost = "constant", .needs = ..., .reason = ..., .spared = ...}};
 ///
 /// goes into hum.h and hum.cpp, in the room's CMakeLists.txt. Then
 ///   - scene::Effects (core/scene/scene_spec.h) gets its parameters, a Hum, which it finds in HandModel::effects,
@@ -93,6 +95,12 @@ struct Stage {
     bool senses;        // comes before any part moves
     bool before_start;  // runs also while the start gate is closed
     void (*run)(const HandModel&, HandState&, TickFrame&) noexcept;
+};
+
+/// A stage that a scene does not have, and why.
+struct SparedStage {
+    const char* name;
+    const char* reason;
 };
 
 /// Stages in the order of the tick.

@@ -54,7 +54,8 @@ inline constexpr StageOf kSurfaceProxy{
                           "far as no triangles meet; no distance field, no points"
                         : "contact.method is god_object_heuristic and contact is that of surfaces: the proxy follows "
                           "the hand as far as no triangles meet; no distance field, no points";
-         }}};
+         },
+     .spared = contactInstead}};
 
 /// The proven gap, and the contacts that hold the proxy.
 void describeSurface(const HandModel& model, const HeldTarget& target, const SurfaceFollow& follow,

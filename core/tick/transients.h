@@ -43,6 +43,7 @@ inline constexpr StageOf kTransients{
      .cost = "constant",
      .needs = [](const HandModel& model) { return model.effects.transients.amplitude > 0.0 && model.hasObstacles(); },
      .reason =
-         [](const HandModel&) { return "effects.transients is set: a decaying vibration is added at every impact"; }}};
+         [](const HandModel&) { return "effects.transients is set: a decaying vibration is added at every impact"; },
+     .spared = [](const HandModel&) { return "effects.transients is not set"; }}};
 
 }  // namespace passung::tick

@@ -53,9 +53,16 @@ std::vector<loop::HandPort> portsOf(const Hands& hands) {
 
 }  // namespace
 
-std::vector<session::StageNote> stageNotes(std::span<const tick::Stage> stages) {
+std::vector<session::StageNote> stageNotes(const tick::SceneModels& models) {
     std::vector<session::StageNote> notes;
-    for (const tick::Stage& stage : stages) notes.push_back({stage.name, stage.reason});
+    const auto add = [&notes](const char* name, const char* reason, bool runs) {
+        if (std::none_of(notes.begin(), notes.end(), [&](const auto& known) { return known.name == name; }))
+            notes.push_back({name, reason, runs});
+    };
+    for (std::size_t i = 0; i < models.size(); ++i)
+        for (const tick::Stage& stage : models.stages(i)) add(stage.name, stage.reason, true);
+    for (std::size_t i = 0; i < models.size(); ++i)
+        for (const tick::SparedStage& stage : models.spared(i)) add(stage.name, stage.reason, false);
     return notes;
 }
 
@@ -107,13 +114,8 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const plan::Condi
         const std::lock_guard lock(halt_mutex_);
         run_.swap(run);
     }
-    std::vector<session::StageNote> notes;  // of a pair the stages of both intervals, each once
-    for (std::size_t i = 0; i < run_->scenes.models.size(); ++i)
-        for (session::StageNote& note : stageNotes(run_->scenes.models.stages(i)))
-            if (std::none_of(notes.begin(), notes.end(), [&](const auto& known) { return known.name == note.name; }))
-                notes.push_back(std::move(note));
     if (performer_ != nullptr) performer_->awaitPicture();  // no clock runs before
-    return notes;
+    return stageNotes(run_->scenes.models);
 }
 
 Result<BuiltScenes> LoopApparatus::build(const std::vector<session::RenderedScene>& scenes) {

@@ -96,7 +96,7 @@ private:
     std::unique_ptr<Run> run_;
 };
 
-/// What runs in every tick of a scene and why.
-std::vector<session::StageNote> stageNotes(std::span<const tick::Stage> stages);
+/// What runs in the ticks of these scenes, and why, each once; then what runs in none of them.
+std::vector<session::StageNote> stageNotes(const tick::SceneModels& models);
 
 }  // namespace passung::run

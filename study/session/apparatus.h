@@ -63,10 +63,11 @@ struct LoopHealth {
     Delivered delivered;
 };
 
-/// One stage of the tick and why it runs.
+/// One stage of the tick and why it runs, or does not.
 struct StageNote {
     std::string name;
     std::string reason;
+    bool runs = true;
 };
 
 /// The session's view of loop, device and scene. It never blocks longer than it is told to.

@@ -6,6 +6,7 @@
 #include "core/base/digest.h"
 #include "core/base/regular_file.h"
 #include "core/scene/contact_geometry.h"
+#include "core/tick/scene_sequence.h"
 #include "study/protocol/document.h"
 #include "study/run/files/builds.h"
 #include "study/run/files/known_names.h"
@@ -54,6 +55,30 @@ void printHands(const scene::SceneSpec& spec) {
                    spec.parts[spec.heldBy(i)].name);
 }
 
+/// What a scene does not cost, and why.
+void printSpared(const scene::Scene& scene) {
+    const tick::SceneModels models(scene);
+    const auto line = [](const std::string& what, const std::string& why) { fmt::print("  {:<24}{}\n", what, why); };
+    line("not run", "why not");
+    for (const tick::SparedStage& stage : models.spared(0)) line(stage.name, stage.reason);
+    const auto anyPart = [&](auto has) { return std::any_of(scene.parts.begin(), scene.parts.end(), has); };
+    const auto geometry = scene::geometryOf(scene.spec).geometry;
+    const std::string from = geometry == scene::Geometry::ClosedForm ? "contact is computed from closed forms"
+                             : geometry == scene::Geometry::Surface  ? "contact is computed from surfaces"
+                                                                     : "contact is computed from distance fields";
+    line("not built", "why not");
+    if (!anyPart([](const auto& part) { return part->field != nullptr; })) line("distance fields", from);
+    if (!anyPart([](const auto& part) { return part->shell.has_value(); })) line("point shells", from);
+    if (!anyPart([](const auto& part) { return part->clusters != nullptr; })) line("trees of surfaces", from);
+    const auto still = static_cast<std::size_t>(std::count_if(scene.spec.parts.begin(), scene.spec.parts.end(),
+                                                              [](const scene::PartSpec& part) { return !part.held; }));
+    if (still < 2) return;
+    const std::size_t pairs = still * (still - 1) / 2;
+    line("not paired", "why not");
+    line(fmt::format("{} pair{} of parts", pairs, pairs == 1 ? "" : "s"),
+         fmt::format("nobody holds either of them; {} of {} parts rest", still, scene.parts.size()));
+}
+
 Result<Done> printStages(const scene::SceneSpec& spec, scene::PartCache& cache, ProgressLine& progress) {
     const auto scene = scene::buildScene(spec, cache);
     progress.show("");
@@ -69,6 +94,7 @@ Result<Done> printStages(const scene::SceneSpec& spec, scene::PartCache& cache, 
     fmt::print("  {:<22}{:>10.1f}{:>10.1f}  {}: most {:.1f} µs; processor time of {} ticks {}, the least of {} runs\n",
                "whole tick", tick.median_us, tick.p99_us, tick.fits() ? "fits 1 kHz here" : "does not fit 1 kHz here",
                tick.most_us, tick.ticks, tick.in_contact ? "in contact" : "without contact", run::TickCost::kRuns);
+    printSpared(*scene);
     return Done{};
 }
 

@@ -40,8 +40,12 @@ std::string deviceJson(const DeviceDescription& device) {
 
 std::string stagesJson(std::span<const session::StageNote> stages) {
     std::vector<std::string> items;
-    for (const session::StageNote& stage : stages)
-        items.push_back(JsonObject().text("stage", stage.name).text("reason", stage.reason).str());
+    for (const session::StageNote& stage : stages) {
+        JsonObject json;
+        json.text("stage", stage.name).text("reason", stage.reason);
+        if (!stage.runs) json.boolean("runs", false);
+        items.push_back(json.str());
+    }
     return jsonList(items);
 }
 

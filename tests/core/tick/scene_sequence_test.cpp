@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -80,6 +83,29 @@ TEST(SceneModels, StayWhereTheyAreAndAreThoseOfTheirScenes) {
         EXPECT_STREQ(models.stages(1)[i].name, hard.model().stages[i].name);
     tick::SceneSequence scenes(std::array{tick::SceneTurn{&models[1]}});
     for (int k = 0; k < 50; ++k) EXPECT_EQ(scenes.step({kPressed}).F_D_B.force, hard.step(kPressed).F_D_B.force);
+}
+
+TEST(SceneModels, TellWhatASceneDoesWithoutAndWhy) {
+    // Truth: table: an effect is among the stages when the scene names it, else among those that it does without; no
+    // stage is in both.
+    const auto has = [](const auto& list, std::string_view name) {
+        return std::any_of(list.begin(), list.end(), [&](const auto& stage) { return stage.name == name; });
+    };
+    scene::SceneSpec plain = pressed(500.0), loud = pressed(500.0);
+    loud.effects.transients.amplitude = 1.0;
+    const test::Bench without(plain), with(loud);
+    for (const bool named : {false, true}) {
+        const tick::SceneModels models(named ? with.scene() : without.scene());
+        const auto stages = models.stages(0);
+        const auto spared = models.spared(0);
+        EXPECT_EQ(has(stages, "contact transients"), named);
+        EXPECT_EQ(has(spared, "contact transients"), !named);
+        EXPECT_GT(spared.size(), 5u);
+        for (const tick::SparedStage& stage : spared) {
+            EXPECT_FALSE(has(stages, stage.name)) << stage.name;
+            EXPECT_NE(std::string(stage.reason), "") << stage.name;
+        }
+    }
 }
 
 TEST(SceneSequence, TheHashTellsOfWhatCameBeforeAChangeOfScenes) {

@@ -140,6 +140,25 @@ TEST(Explain, HasNoOrdersOfAScene) {
     EXPECT_EQ(ended.err, "scene.toml: error: a scene has no orders: --orders is for study files\n");
 }
 
+TEST(Explain, TellsWhatIsNotRunBuiltOrPaired) {
+    // Truth: the scene by hand: closed forms, no effect, two parts at rest.
+    const TempFolder folder;
+    writeText(folder / "scene.toml", R"(unit = "mm"
+part = [
+  { name = "ball", held = true, shape = { kind = "sphere", diameter = 10 }, pose = { position = [0, 0, 20] } },
+  { name = "a", shape = { kind = "box", width = 20, depth = 20, height = 20 } },
+  { name = "b", shape = { kind = "box", width = 20, depth = 20, height = 20 }, pose = { position = [40, 0, 0] } },
+]
+)");
+    const Ended ended = runProgram(folder.path(), {"explain", "scene.toml"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    for (const char* line : {"\n  contact transients      effects.transients is not set\n",
+                             "\n  contacts at the hand    contact is computed from the shapes' closed forms\n",
+                             "\n  distance fields         contact is computed from closed forms\n",
+                             "\n  1 pair of parts         nobody holds either of them; 2 of 3 parts rest\n"})
+        EXPECT_NE(ended.out.find(line), std::string::npos) << line << ended.out;
+}
+
 TEST(Explain, GivesTheDiameterOfAFit) {
     // Truth: closed form: 20 g6 is 19.980 to 19.993 mm; the least clearance takes the thicker.
     const TempFolder folder;
