@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/scene/number_text.h"
+
 namespace passung::scene {
 
 namespace {
@@ -100,6 +102,30 @@ std::optional<MassProperties> massOf(const Part& part, double density) {
 
 bool isClosed(const importer::MeshReport& report) {
     return report.kind == importer::SurfaceKind::Solid && report.closed_holes == 0;
+}
+
+std::optional<HeldWeight> weigh(const SceneSpec& scene, const geometry::MassProperties& body) {
+    const double g = scene.effects.weight.gravity.norm();
+    if (!(g > 0.0) || !(body.mass > 0.0)) return std::nullopt;
+    HeldWeight weight;
+    weight.body = body;
+    weight.force = body.mass * g;
+    weight.torque = weight.force * body.centre.norm();
+    weight.has_proxy = scene.parts.size() > 1 && !scene.contact.rendersAtHand();
+    if (!weight.has_proxy) return weight;
+    weight.sag = weight.force / scene.contact.stiffness;
+    const double K_phi = scene.contact.rotational_stiffness;
+    weight.turn = K_phi > 0.0 ? weight.torque / K_phi : 0.0;
+    return weight;
+}
+
+std::string describe(const HeldWeight& weight) {
+    const std::string weighs = "of " + number("%.3g g", 1e3 * weight.body.mass) + " weighs " +
+                               number("%.3g N", weight.force) + ", up to " + number("%.3g Nm", weight.torque) +
+                               " about its origin; in the air it ";
+    if (!weight.has_proxy) return weighs + "is where the hand is";
+    return weighs + "hangs " + number("%.3g mm", 1e3 * weight.sag) + " from the hand, turned by up to " +
+           number("%.2g deg", 180.0 / std::numbers::pi * weight.turn);
 }
 
 }  // namespace passung::scene
