@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/truth/least_energy.h"
+#include "core/scene/part_mass.h"
 
 namespace passung::truth {
 
@@ -31,6 +32,11 @@ ForceReference::ForceReference(const scene::SceneSpec& scene) {
         missing_ = "the scene has no obstacle";
         return;
     }
+    const bool weighs = held->density > 0.0 && !scene.effects.weight.gravity.isZero(0.0);
+    if (const auto body = weighs ? scene::massOf(*shape, held->density) : std::nullopt) {
+        weight_ = body->mass * scene.effects.weight.gravity;
+        centre_ = body->centre;
+    }
     separation_ = separationOf(*shape, obstacles);
     if (separation_ == nullptr)
         missing_ =
@@ -45,7 +51,10 @@ std::optional<Vec3> ForceReference::at(const Pose& X_WG_last, const Pose& X_WH) 
     // What was shown may overlap: then from the nearest pose that does not.
     const auto free = leastEnergyFrom(*separation_, rho, X_WG_last, X_WG_last);
     if (!free) return std::nullopt;
-    const auto found = leastEnergyFrom(*separation_, rho, free->X, X_WH);
+    Pose rest{X_WH.q, X_WH.p + weight_ / stiffness_};
+    if (rho_ > 0.0 && !weight_.isZero(0.0))
+        rest.q = rotationFromVector((X_WH.q * centre_).cross(weight_) / (rho_ * rho_ * stiffness_)) * X_WH.q;
+    const auto found = leastEnergyFrom(*separation_, rho, free->X, rest);
     if (!found || found->way > kSnap) return std::nullopt;
     return Vec3(stiffness_ * (found->X.p - X_WH.p));
 }

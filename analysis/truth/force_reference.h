@@ -16,7 +16,8 @@ namespace passung::truth {
 /// a pose that was shown (least_energy.h, separation.h). Neither the contact core nor its closed forms, fields, points,
 /// triangles or solver are asked. Pairs: a ball among solids without hollows, a round peg and its bore, boxes and
 /// square pegs with each other and in square pockets; with their edges, on edges. Limit cases: no overlap at the hand →
-/// no force. A ball on a plane: K times its depth.
+/// no force. A ball on a plane: K times its depth. Of a part that weighs (core/tick/weight.h) the energy is from where
+/// the spring and its weight balance; the force is that of the spring to the hand.
 class ForceReference {
 public:
     explicit ForceReference(const scene::SceneSpec& scene);
@@ -35,7 +36,8 @@ public:
 private:
     std::string missing_;
     double stiffness_ = 0.0, rho_ = 0.0;
-    std::shared_ptr<const Separation> separation_;  // shared_ptr: the reference can be copied
+    Vec3 weight_ = Vec3::Zero(), centre_ = Vec3::Zero();  // of the held part: world axes [N]; in the part [m]
+    std::shared_ptr<const Separation> separation_;        // shared_ptr: the reference can be copied
 };
 
 }  // namespace passung::truth

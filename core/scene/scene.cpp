@@ -3,6 +3,8 @@
 #include <cstdio>
 
 #include "core/scene/contact_geometry.h"
+#include "core/scene/number_text.h"
+#include "core/scene/part_mass.h"
 
 namespace passung::scene {
 
@@ -29,6 +31,22 @@ std::string cacheKey(const PartSpec& spec, const PartNeeds& needs) {
     key += needs.clusters ? "clusters " : "";
     for (const double value : {needs.tolerance, needs.cell, needs.depth, needs.spacing}) append(key, value);
     return key;
+}
+
+/// What is wrong with the density of a part that is built.
+std::optional<Error> weightProblem(const SceneSpec& spec, const PartSpec& part, const Part& built) {
+    if (!(part.density > 0.0)) return std::nullopt;
+    const auto wrong = [&](std::string message) {
+        return Error{.message = std::move(message), .key = "part " + part.name + ": density"};
+    };
+    if (!built.shape && !isClosed(built.report)) return wrong("needs a mesh without holes, which encloses a volume");
+    if (built.shape && std::holds_alternative<shape::Sheet>(*built.shape)) return wrong("a sheet encloses no volume");
+    if (!part.held || spec.effects.weight.gravity.isZero(0.0)) return std::nullopt;
+    const auto weight = weigh(spec, *massOf(built, part.density));
+    if (weight && weight->turn > kMostHangingTurn)
+        return wrong("the weight would turn the part by " + number("%.2g", weight->turn) +
+                     " rad against the rotational stiffness: at most " + number("%.2g", kMostHangingTurn));
+    return std::nullopt;
 }
 
 }  // namespace
@@ -59,6 +77,7 @@ Result<Scene> buildScene(const SceneSpec& spec, PartCache& cache) {
                                       .cell = spec.contact.cell,
                                       .spacing = spec.contact.spacing});
         if (!built) return built.errors();
+        if (const auto problem = weightProblem(spec, part, **built)) return *problem;
         scene.parts.push_back(std::move(*built));
     }
     scene.held = spec.heldBy(0);

@@ -73,6 +73,7 @@ std::vector<Error> SceneSpec::validate() const {
         }
     }
     for (const PartSpec& part : parts) {
+        check.notNegative("part: density", part.density);
         check.notNegative("part: friction", part.friction);
         check.notNegative("part: sliding friction", part.sliding_friction);
         check.require(!(part.sliding_friction > part.friction), "part: sliding friction", part.sliding_friction,
@@ -112,6 +113,8 @@ std::vector<Error> SceneSpec::validate() const {
     check.require(!(transients.frequency >= 500.0), "effects: transients: frequency", transients.frequency,
                   "must be below half the tick's rate, 500 Hz");
     check.positive("effects: transients: decay", transients.decay);
+    check.require(effects.weight.gravity.allFinite(), "effects: weight: gravity", effects.weight.gravity.norm(),
+                  "must be finite");
     check.notNegative("contact: proxy filter", contact.proxy_filter);
     for (std::size_t i = 0; i < handCount(); ++i) check.device(hand(i));
     return check.errors;

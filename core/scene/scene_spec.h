@@ -29,6 +29,7 @@ struct PartSpec {
     std::size_t hand = 0;              // which one, in the order of SceneSpec::hand()
     double friction = 0.0;             // of the surface at rest: μ_s of a pair is the geometric mean, ≥ 0
     double sliding_friction = 0.0;     // likewise μ_d, ≤ friction
+    double density = 0.0;              // [kg/m³], ≥ 0; 0: weighs nothing
     Vec3 shown_offset = Vec3::Zero();  // drawn this far from where it is touched, world axes [m]
 };
 
@@ -103,10 +104,21 @@ struct Transients {
     double decay = 0.02;       // time constant [s], > 0
 };
 
+/// Weight of the held parts.
+struct Weight {
+    Vec3 gravity = Vec3::Zero();  // world axes [m/s²]; zero: none
+};
+
+inline constexpr double kStandardGravity = 9.80665;  // [m/s²]
+/// A part's weight turns it by no more than this against the coupling's rotational stiffness [rad]: from half a turn on
+/// nothing would tell which way, and contacts turn it too.
+inline constexpr double kMostHangingTurn = 1.0;
+
 /// Effects beyond contact; what is 0 is not built.
 struct Effects {
     double passivity_damping = 0.0;  // most of the passivity controller's damper [N·s/m], ≥ 0; 0: no controller
     Transients transients;
+    Weight weight;
 };
 
 inline constexpr std::size_t kMostHands = 4;

@@ -15,6 +15,8 @@ struct EnergyAccount {
     Twist V_BD;   // from the one before that
     Wrench sent;  // sum of what was sent since
     int ticks = 0;
+    int weighed = 0;      // of them, with the part's weight in what was sent
+    double lifted = 0.0;  // liftEnergy of where the handle was believed to be then [J]
 };
 
 /// The share of one pair, an obstacle and the held part, in it: contact_energy.h.
@@ -33,11 +35,11 @@ struct EnergyAccounts {
 /// What one obstacle does to the held part in this tick.
 struct ObstaclePush {
     Wrench wrench;          // of it on the held part, as F_H_W
-    double pressure = 0.0;  // the sum of its forces' sizes [N]; of what has no obstacle: 0
+    double pressure = 0.0;  // the sum of its forces' sizes [N]; of what has no obstacle, the part's weight: 0
 };
 
-/// Handed on: the method of contact notes them, contact shares adds the rest of the wrench, the output delay delays
-/// them, no wrench clears them.
+/// Handed on: the method of contact notes them, contact shares adds the rest of the wrench, weight in the hand
+/// the weight, the output delay delays them, no wrench clears them.
 struct Pushes {
     static constexpr bool kHandedOn = true;
     std::vector<ObstaclePush> pushes = std::vector<ObstaclePush>(1);  // as EnergyAccounts::pairs

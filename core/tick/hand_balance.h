@@ -20,6 +20,8 @@ namespace passung::tick {
 /// meanwhile, so that no part ever passes another. Alone that would make a wall of a part in another hand: whom it is
 /// pushed against feels it, who holds it does not. So before the turns each hand is given the pose where all springs
 /// and all contacts together balance, and its proxy goes there in place of going to the hand. (Own.)
+/// A part with weight goes to where it would rest in the air (weight.h); that is its hand's pose below, and its weight
+/// is in what it pushes others with.
 ///
 /// Symbols: h a hand, H_h and G_h its pose and its proxy, K the coupling's stiffness, which all hands share, ρ_h its
 /// metric radius, ρ_h² = K_φ/K; u_h the motion of G_h that is looked for, w_h the way from G_h to H_h, both (Δx, ρ_h
@@ -60,8 +62,8 @@ struct HandState;
 /// The order of the hands' turns in a tick.
 using Turns = std::array<std::size_t, scene::kMostHands>;
 
-/// Sets each hand's HeldTarget from where the hands are, and says in which order they go: `first` and those after it,
-/// but for who gives way. rt-safe.
+/// Sets each hand's HeldTarget from where the hands are, with what hangs from them, and says in which order they go:
+/// `first` and those after it, but for who gives way. rt-safe.
 Turns balanceHands(std::span<const HandModel> models, std::span<HandState> states, std::span<const Pose> X_WH,
                    std::size_t first, BalanceMemory& memory) noexcept;
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/field/distance_field.h"
+#include "core/scene/part_mass.h"
 #include "core/tick/hand_state.h"
 
 namespace passung::tick {
@@ -91,6 +92,16 @@ void addFriction(HandModel& model, const scene::Scene& scene) {
     if (any) model.friction = std::move(friction);
 }
 
+/// What gravity does to the held part, if the scene asks for it.
+void addGravity(HandModel& model, const scene::Scene& scene) {
+    const double density = scene.spec.parts[model.body].density;
+    if (scene.spec.effects.weight.gravity.isZero(0.0) || !(density > 0.0)) return;
+    const auto mass = scene::massOf(*scene.parts[model.body], density);
+    if (!mass) return;
+    model.weight = mass->mass * scene.spec.effects.weight.gravity;
+    model.centre = mass->centre;
+}
+
 template <const auto&... stage>
 void addStages(HandModel& model, StageList<stage...>) {
     const auto add = [&model](const StageCard& card, auto* run) {
@@ -136,6 +147,7 @@ HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size
     model.first_triangles = world.first_triangles;
     model.finest_cell = finestCellOf(model);
     addFriction(model, scene);
+    addGravity(model, scene);
     const double ratio = spec.contact.rotational_stiffness / spec.contact.stiffness;
     model.metric_radius = ratio > 0.0 ? std::sqrt(ratio) : std::max(gyrationRadius(model, scene), 1e-6);
     model.margins = marginsOf(model);

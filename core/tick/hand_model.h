@@ -57,6 +57,8 @@ struct HandModel {
     double finest_cell = 0.0;         // of all fields [m]
     double reach = 0.0;               // no point of the held part is farther from its origin [m]
     double metric_radius = 0.0;       // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
+    Vec3 weight = Vec3::Zero();       // of the held part, world axes; zero: none [N]
+    Vec3 centre = Vec3::Zero();       // of its mass, part frame [m]
     ProxyMargins margins;
     scene::Effects effects;
     bool record_hand_depth = true;
@@ -73,6 +75,9 @@ struct HandModel {
     bool hasFieldProxyOf(scene::ContactMethod method) const noexcept {
         return hasFieldProxy() && contact.method == method;
     }
+    bool hasWeight() const noexcept { return !weight.isZero(0.0); }
+    /// Its weight turns what hangs from the hand, or the hand itself.
+    bool hangsTurned() const noexcept { return !hasProxy() || contact.rotational_stiffness > 0.0; }
     /// Its looks may stop and go on in the next tick (field_look.h).
     bool hasNodeBudget() const noexcept {
         return hasFieldProxy() && contact.method != scene::ContactMethod::Penalty && contact.budget_nodes > 0;

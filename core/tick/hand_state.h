@@ -22,13 +22,14 @@
 #include "core/tick/tick_frame.h"
 #include "core/tick/transients.h"
 #include "core/tick/virtual_coupling.h"
+#include "core/tick/weight.h"
 
 namespace passung::tick {
 
 // The wholes, for those who walk the stages. No stage includes this header: from its parts no way leads to others.
 
 /// Every stage that a scene may need, in the order of the tick.
-using AllStages = StageList<kInputGuard, kEnergyAccount, kStartGate,                    // where the hand is
+using AllStages = StageList<kInputGuard, kEnergyAccount, kStartGate, kWeight,           // where the hand is
                             kFreeHand,                                                  // no contact
                             kContactsAtHand, kPenaltyWrench,                            // direct penalty
                             kPenaltyTool, kProxySweep,                                  // tool, god object
@@ -39,15 +40,15 @@ using AllStages = StageList<kInputGuard, kEnergyAccount, kStartGate,            
                             kSurfaceProxy, kSurfaceRecord, kSurfaceDepth,               // the same on surfaces
                             kVirtualCoupling,                                           // their wrench
                             kHeldPushes,
-                            kTransients,                                         // effects
-                            kContactShares, kOutputDelay, kPassivityController,  // what goes out
+                            kTransients,                                                        // effects
+                            kContactShares, kWeightInHand, kOutputDelay, kPassivityController,  // what goes out
                             kNoWrench, kOutputLimits>;
 
 /// Everything of a hand that a tick carries to the next: the stages' own states. Sized by makeHandState; a tick never
 /// allocates.
 struct HandState : Parts<ObstaclePoses, HeldTarget, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion,
                          ProxyFilter, ClosedFormHold, FilteredHold, ClosedFormMemory, SurfaceFollow, HandVelocity,
-                         ToolMotion, Stretch, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
+                         ToolMotion, Stretch, Hang, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
 
 /// The state before the first tick, with all memory that the ticks will need.
 HandState makeHandState(const HandModel& model);

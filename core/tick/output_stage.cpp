@@ -41,13 +41,13 @@ Wrench wrenchOnDevice(const HandModel& model, const HandSample& hand, const Wren
 void splitSent(const HandModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
                double force_left, double torque_left) noexcept {
     Wrench rest = sent.last_sent;
-    for (std::size_t i = 0; i < sent.last_shares.size(); ++i) {
+    for (std::size_t i = 0; i + 1 < sent.last_shares.size(); ++i) {
         const Wrench push = wrenchOnDevice(model, hand, pushes.pushes[i].wrench);
         sent.last_shares[i] = {force_left * push.force, torque_left * push.torque};
         rest.force -= sent.last_shares[i].force;
         rest.torque -= sent.last_shares[i].torque;
     }
-    sent.last_shares.back() = rest;  // that has no push of its own
+    sent.last_shares.back() = rest;  // that no obstacle pushes: the weight, and what has no push of its own
 }
 
 }  // namespace
@@ -88,6 +88,7 @@ void limitOutput(const HandModel& model, const HandSample& hand, const Pushes& p
         command.F_D_B = Wrench{};
         felt.F_H_W = Wrench{};
         sent.last_sent = sent.sent_at_sample = Wrench{};
+        sent.weighed = false;
         for (Wrench& share : sent.last_shares) share = Wrench{};
         return;
     }
@@ -109,6 +110,7 @@ void limitOutput(const HandModel& model, const HandSample& hand, const Pushes& p
     command.F_D_B = wrench;
     felt.F_H_W = wrenchOnHeldPart(model, hand, wrench);
     sent.last_sent = wrench;
+    sent.weighed = model.hasWeight() && !pushes.pushes.back().wrench.force.isZero(0.0);
     if (hand.sample_periods > 0) sent.sent_at_sample = wrench;
     splitSent(model, hand, pushes, sent, within * force_rising, turns ? within * torque_rising : 0.0);
 }

@@ -21,6 +21,7 @@ struct SentWrench {
     Wrench last_sent;                                          // F_D_B of the previous tick
     Wrench sent_at_sample;                                     // F_D_B of the last tick with a new sample
     bool latched = false;                                      // a computed wrench was not finite
+    bool weighed = false;                                      // the held part's weight is in last_sent
     std::vector<Wrench> last_shares = std::vector<Wrench>(1);  // each pair's share of last_sent
 };
 

@@ -15,6 +15,24 @@ Vec3 certainMotion(const Vec3& step, double quantum, Vec3& ahead) noexcept {
     return step - (ahead - before);
 }
 
+/// Where the handle is believed to be.
+Pose believedPose(const Pose& X_BD, const Twist& ahead) noexcept {
+    return {rotationFromVector(-ahead.w) * X_BD.q, X_BD.p - ahead.v};
+}
+
+/// Leaves the energy of the part's weight out of the account, and of that of what no obstacle pushes.
+void leaveOutWeight(const HandModel& model, const Pose& X_BD, EnergyAccounts& accounts) noexcept {
+    EnergyAccount& account = accounts.energy;
+    const double lifted = liftEnergy(model, believedPose(X_BD, account.ahead));
+    if (account.has_sample) {
+        const double of_weight = (lifted - account.lifted) * account.weighed / account.ticks;
+        account.taken_in -= of_weight;
+        accounts.pairs.back().taken_in -= of_weight;
+    }
+    account.lifted = lifted;
+    account.weighed = 0;
+}
+
 }  // namespace
 
 void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSample& hand, const SentWrench& sent,
@@ -23,6 +41,7 @@ void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSa
     account.sent.force += sent.last_sent.force;
     account.sent.torque += sent.last_sent.torque;
     ++account.ticks;
+    if (sent.weighed) ++account.weighed;
     for (std::size_t i = 0; i < accounts.pairs.size(); ++i) {
         accounts.pairs[i].sent.force += sent.last_shares[i].force;
         accounts.pairs[i].sent.torque += sent.last_shares[i].torque;
@@ -38,9 +57,12 @@ void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSa
             const Vec3 moved = certainMotion(dx, model.limits.quantum, account.ahead.v);
             const Vec3 turned = certainMotion(dphi, model.limits.rotational_quantum, account.ahead.w);
             account.taken_in -= (account.sent.force.dot(moved) + account.sent.torque.dot(turned)) / account.ticks;
+            if (model.hasWeight()) leaveOutWeight(model, X, accounts);
             bookPairs(accounts, moved, turned, account.ticks);
             const double elapsed = kTickSeconds * static_cast<double>(hand.sample_periods);
             account.V_BD = {dx / elapsed, dphi / elapsed};
+        } else if (model.hasWeight()) {
+            leaveOutWeight(model, X, accounts);
         }
         account.X_BD = X;
         account.has_sample = true;

@@ -5,6 +5,7 @@
 #include "core/tick/input_guard.h"
 #include "core/tick/output_stage.h"
 #include "core/tick/tick_frame.h"
+#include "core/tick/weight.h"
 
 namespace passung::tick {
 
@@ -27,6 +28,13 @@ namespace passung::tick {
 /// fast cycle may come out high by K q x. q = 0: the readings themselves. Limit cases: no motion or no wrench → E
 /// stays. A held sample books nothing until the next new one comes. After rejected samples the way between is not known
 /// and nothing is booked for it.
+///
+/// Weight: what lifting the part takes comes back with the part, whoever lets it down, and a trial may begin aloft. So
+/// that is left out of E: E - U, U the part's energy in the air at the believed place y (liftEnergy), booked where the
+/// weight was sent. E ≥ 0 then says the same of contacts, dampers and limits. Limit cases: a part that is lifted and
+/// let down in the air → 0 throughout, but for what holding its torque for a tick gives out while it turns by ω, at
+/// most ½ |τ| ω² τ_tick a second; a weight that the device's limits cut on the way up and not on the way down → less,
+/// by what that gave out.
 ///
 /// Stage, of every scene: E and the handle's velocity, from the sample and what was sent.
 void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSample& hand, const SentWrench& sent,

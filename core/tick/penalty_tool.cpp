@@ -41,8 +41,9 @@ motion::Motion solved(Matrix6 A, motion::Motion b) noexcept {
 /// The equation of one tick: penalty_tool.h.
 class ToolBalance {
 public:
-    ToolBalance(const HandModel& model, const HandSample& hand, const Proxy& proxy, const ToolMotion& tool) noexcept
-        : model_(model), X_WH_(hand.X_WH), X_before_(proxy.X_WG), law_(model.contact) {
+    ToolBalance(const HandModel& model, const HandSample& hand, const Pose& X_WT, const Proxy& proxy,
+                const ToolMotion& tool) noexcept
+        : model_(model), X_WT_(X_WT), X_before_(proxy.X_WG), law_(model.contact) {
         const scene::ContactSpec& c = model.contact;
         law_.stiffness = c.penalty_stiffness;
         if (c.coupling != scene::PenaltyCoupling::Virtual) return;
@@ -60,7 +61,7 @@ public:
         scale_ = load.scale / model_.contact.stiffness;
         motion::Motion push;
         push << load.wrench.force, load.wrench.torque / model_.metric_radius;
-        stretch = unconstrainedMotion(model_, proxy.X_WG, X_WH_);
+        stretch = unconstrainedMotion(model_, proxy.X_WG, X_WT_);
         const motion::Motion U = way(proxy);
         open = stretch + push / model_.contact.stiffness + damper_.cwiseProduct(hand_ - U) +
                inertia_.cwiseProduct(last_ - U);
@@ -115,7 +116,7 @@ private:
     }
 
     const HandModel& model_;
-    const Pose& X_WH_;
+    const Pose& X_WT_;  // where the spring draws the tool
     const Pose X_before_;
     scene::ContactSpec law_;  // of the contacts
     motion::Motion stiff_ = motion::Motion::Ones(), damper_ = motion::Motion::Zero(), inertia_ = motion::Motion::Zero();
@@ -179,11 +180,12 @@ bool makeStep(const ProxyView& view, ToolBalance& balance, const motion::Motion&
 
 }  // namespace
 
-void settleTool(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles, Proxy& proxy,
-                ToolMotion& tool, QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
+void settleTool(const HandModel& model, const HandSample& hand, const HeldTarget& target,
+                const ObstaclePoses& obstacles, Proxy& proxy, ToolMotion& tool, QueryMemory& memory, Pushes& pushes,
+                Report& report) noexcept {
     const ProxyView view{model, proxy, memory, report, obstacles};
     startTool(view, hand, tool);
-    ToolBalance balance(model, hand, proxy, tool);
+    ToolBalance balance(model, hand, target.X_WT, proxy, tool);
     balance.update(proxy);
     const double longest = balance.longestStretch(), half_cell = kLongestStep * model.finest_cell;
     const double reach = nextReach(model, tool.last_way);

@@ -43,6 +43,9 @@ struct ToolMotion {
 /// only as long as the hand is away. What pushes the tool away from the hand does so by at most kRepair (god_object.h)
 /// of a cell in a tick, so that a tool that starts in deep overlap leaves it without a kick; it then has no speed.
 ///
+/// A tool with weight (weight.h): w leads to where it would rest in the air. Its mass is tool_mass_kg, whatever it
+/// weighs.
+///
 /// Limit cases: no contact → G = H (quasi-static); a mass on a spring and damper behind the hand (virtual). A plane of
 /// stiffness k → the hand feels K k/(K + k). k → ∞ → the god object. K → ∞ → the direct penalty.
 /// Invariants: force on the hand ≤ K times the stretch plus damping. Quasi-static: the tool is where E = ½K|w|² + E_c
@@ -52,8 +55,9 @@ inline constexpr int kToolSteps = 8;
 inline constexpr double kSettled = 1e-8;  // [m], of q/D
 
 /// Stage. proxy.h's record and virtual_coupling.h follow. rt-safe.
-void settleTool(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles, Proxy& proxy,
-                ToolMotion& tool, QueryMemory& memory, Pushes& pushes, Report& report) noexcept;
+void settleTool(const HandModel& model, const HandSample& hand, const HeldTarget& target,
+                const ObstaclePoses& obstacles, Proxy& proxy, ToolMotion& tool, QueryMemory& memory, Pushes& pushes,
+                Report& report) noexcept;
 inline constexpr StageOf kPenaltyTool{
     settleTool,
     {.name = "penalty tool",

@@ -22,8 +22,9 @@ struct ObstaclePoses {
     Pose X_WG_begin;
 };
 
-/// Where the held part is asked to go, and what pushes it there beside its hand: the hand's pose and nothing, but where
-/// it touches a part in another hand (hand_balance.h). Nobody writes it but step(), before the stages that follow it.
+/// Where the held part is asked to go, and what pushes it there beside its hand: the hand's pose, or where a part with
+/// weight rests below it (weight.h), and nothing, but where it touches a part in another hand (hand_balance.h). Nobody
+/// writes it but step(), before the stages that follow it.
 struct HeldTarget {
     static constexpr bool kOnlyRead = true;
     Pose X_WT;

@@ -113,13 +113,13 @@ void step(const TickModel& model, TickState& state, std::span<const DeviceReadin
           std::span<TickOutput> outputs, const StageWatch* watch) noexcept {
     const std::size_t count = model.hands.size();
     std::array<std::size_t, scene::kMostHands> next{};
-    std::array<Pose, scene::kMostHands> X_WH;
+    std::array<Pose, scene::kMostHands> X_WT;  // where each part would be without the others
     for (std::size_t i = 0; i < count; ++i) {
         next[i] = sense(model.hands[i], state, state.hands[i], readings[i], outputs[i].frame, watch);
-        X_WH[i] = outputs[i].frame.X_WH;
+        X_WT[i] = model.hands[i].hasWeight() ? state.hands[i].X_WR : outputs[i].frame.X_WH;
     }
     const std::size_t first = static_cast<std::size_t>(state.tick) % count;
-    const Turns turns = balanceHands(model.hands, state.hands, std::span(X_WH).first(count), first, state.balance);
+    const Turns turns = balanceHands(model.hands, state.hands, std::span(X_WT).first(count), first, state.balance);
     std::uint32_t spared = 0;  // by those who had their turn
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t hand = turns[i];

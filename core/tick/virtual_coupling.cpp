@@ -36,10 +36,11 @@ void measureRates(Stretch& stretch, const HandSample& hand, const Vec3& e, const
 
 }  // namespace
 
-void renderCoupling(const HandModel& model, const HandSample& hand, const Proxy& proxy, Stretch& stretch,
-                    HandWrench& wrench) noexcept {
-    const Vec3 e = proxy.X_WG.p - hand.X_WH.p;
-    const Vec3 psi = rotationVector(proxy.X_WG.q * hand.X_WH.q.conjugate());
+void renderCoupling(const HandModel& model, const HandSample& hand, const Proxy& proxy, const Hang& hang,
+                    Stretch& stretch, HandWrench& wrench) noexcept {
+    const Pose& rest = model.hasWeight() ? hang.X_WR : hand.X_WH;
+    const Vec3 e = proxy.X_WG.p - rest.p;
+    const Vec3 psi = rotationVector(proxy.X_WG.q * rest.q.conjugate());
     measureRates(stretch, hand, e, psi);
     const scene::ContactSpec& c = model.contact;
     wrench.F_H_W.force = springAndDamper(e, stretch.last_stretch_rate, c.stiffness, c.damping);

@@ -3,6 +3,7 @@
 #include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
+#include "core/tick/weight.h"
 
 namespace passung::tick {
 
@@ -23,9 +24,10 @@ struct Stretch {
 /// free motion e = 0 and there is no load, and along a frictionless surface e does not change, so that sliding is not
 /// braked. It may not pull the hand into the surface it leaves: where the damper would turn F against e (T against ψ),
 /// that part is dropped. Limit cases: a proxy at rest gives ė = -v_H, the usual wall damper; e = 0 gives F = 0, also in
-/// the tick after contact.
-void renderCoupling(const HandModel& model, const HandSample& hand, const Proxy& proxy, Stretch& stretch,
-                    HandWrench& wrench) noexcept;
+/// the tick after contact. A part with weight (weight.h): from where it would rest in the air, R in place of H; it
+/// hangs there without a load of this stage.
+void renderCoupling(const HandModel& model, const HandSample& hand, const Proxy& proxy, const Hang& hang,
+                    Stretch& stretch, HandWrench& wrench) noexcept;
 inline constexpr StageOf kVirtualCoupling{
     renderCoupling,
     {.name = "virtual coupling",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 #include <tuple>
 
@@ -141,6 +142,19 @@ bool movesTheSame(const scene::ContactSpec& a, const scene::ContactSpec& b) {
     return fields(a) == fields(b) && (a.method != scene::ContactMethod::Penalty || tool(a) == tool(b));
 }
 
+/// Does a proxy hang from the same hand as far?
+bool hangsTheSame(const scene::SceneSpec& a, const scene::SceneSpec& b) {
+    const auto hang = [](const scene::SceneSpec& scene) -> std::array<double, 5> {
+        const auto held =
+            std::find_if(scene.parts.begin(), scene.parts.end(), [](const auto& part) { return part.held; });
+        const double density = held != scene.parts.end() ? held->density : 0.0;
+        const Vec3 pull = density * scene.effects.weight.gravity;
+        if (pull.isZero(0.0)) return {};
+        return {pull.x(), pull.y(), pull.z(), scene.contact.stiffness, scene.contact.rotational_stiffness};
+    };
+    return hang(a) == hang(b);
+}
+
 bool looksTheSame(const scene::SceneSpec& a, const scene::SceneSpec& b, plan::ShownPose shown) {
     const bool proxy = shown == plan::ShownPose::Proxy && !(a.contact.rendersAtHand() && b.contact.rendersAtHand());
     const auto alike = [&](const scene::PartSpec& x, const scene::PartSpec& y) {
@@ -149,7 +163,7 @@ bool looksTheSame(const scene::SceneSpec& a, const scene::SceneSpec& b, plan::Sh
                (!proxy || (x.friction == y.friction && x.sliding_friction == y.sliding_friction));
     };
     return std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(), alike) &&
-           (!proxy || movesTheSame(a.contact, b.contact));
+           (!proxy || (movesTheSame(a.contact, b.contact) && hangsTheSame(a, b)));
 }
 
 bool isShownOrHeard(const plan::Cues& cues) { return cues.visual || cues.vibrotactile || cues.audio; }

@@ -156,6 +156,7 @@ constexpr std::array kTables{
     TableInfo{"effects", "`[effects]`", "A table for each effect; what is absent is not built."},
     TableInfo{"effects.passivity_controller", "`[effects.passivity_controller]`", ""},
     TableInfo{"effects.transients", "`[effects.transients]`", ""},
+    TableInfo{"effects.weight", "`[effects.weight]`", ""},
     TableInfo{"factor", "`[[factor]]`", ""},
     TableInfo{"level", "Levels written as tables", "A level has either a `value` or a `set`."},
     TableInfo{"task", "`[task]`", ""},

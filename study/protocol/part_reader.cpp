@@ -184,6 +184,7 @@ scene::PartSpec readPartNode(const Node& table, const std::string& parent_path, 
     part.shown_offset = readPosition(read, "shown_offset", units);
     part.friction = read.number("friction");
     part.sliding_friction = read.numberOr("sliding_friction", part.friction);
+    part.density = read.number("density_kg_per_m3");
     if (part.sliding_friction > part.friction) read.fail("sliding_friction", "must not exceed `friction`");
     if (part.held && !part.shown_offset.isZero(0.0))
         read.fail("shown_offset", "the held part cannot be drawn elsewhere: it would move the hand's aim");

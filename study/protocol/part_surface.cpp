@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/scene/mesh_source.h"
+#include "core/scene/part_mass.h"
 
 namespace passung::protocol {
 namespace {
@@ -14,7 +15,7 @@ constexpr int kBallSteps = 12;           // of the search for a ball, along each
 constexpr double kOnSurface = 1e-9;      // of the part's size: rounding
 constexpr double kChordPerSize = 0.005;  // of triangles that give a shape's bounds
 
-PartSurface solid(const Vec3& size, double area) { return {size, area, false, nullptr, nullptr}; }
+PartSurface solid(const Vec3& size, double area) { return {size, area, false, "", nullptr, nullptr}; }
 
 PartSurface roundExtent(double diameter, double length) {
     return solid({diameter, diameter, length}, std::numbers::pi * diameter * (0.5 * diameter + length));
@@ -36,6 +37,7 @@ struct GeometryOf {
     PartSurface operator()(const shape::Sheet& s) const {
         PartSurface sheet = solid({s.width, s.depth, 0.0}, s.width * s.depth);
         sheet.sheet = true;
+        sheet.not_closed = "it is a sheet";
         return sheet;
     }
     PartSurface operator()(const shape::Peg& s) const { return roundExtent(s.diameter, s.length); }
@@ -58,11 +60,21 @@ struct GeometryOf {
     }
 };
 
+/// Why a mesh encloses no volume.
+std::string whyNotClosed(const importer::MeshReport& report) {
+    if (scene::isClosed(report)) return "";
+    if (report.kind == importer::SurfaceKind::OpenSheet) return "its mesh is an open sheet";
+    const std::size_t holes = std::max(report.holes, report.closed_holes);
+    return holes > 0 ? fmt::format("its mesh has {} hole{}", holes, holes == 1 ? "" : "s")
+                     : fmt::format("its mesh has {} open edges", report.open_edges_left);
+}
+
 std::unique_ptr<PartSurface> asGeometry(importer::ImportedMesh mesh) {
     auto geometry = std::make_unique<PartSurface>();
     geometry->size = mesh.report.size;
     geometry->area = mesh.report.area;
     geometry->sheet = mesh.report.kind == importer::SurfaceKind::OpenSheet;
+    geometry->not_closed = whyNotClosed(mesh.report);
     geometry->mesh = std::make_shared<const geometry::TriangleMesh>(std::move(mesh.mesh));
     geometry->tree = std::make_shared<const geometry::TriangleTree>(*geometry->mesh);
     return geometry;
@@ -115,6 +127,28 @@ const std::vector<shape::ThinFeature>& PartGeometries::thin(const scene::PartSpe
     left -= std::min(left, limit.work);
     if (limit.left_out > 0) half_searched_.insert(geometryKey(part));
     return place->second;
+}
+
+std::optional<geometry::MassProperties> PartGeometries::massOf(const scene::PartSpec& part) {
+    const PartSurface* geometry = of(part);
+    if (geometry == nullptr || !geometry->not_closed.empty()) return std::nullopt;
+    const auto [place, fresh] = unit_masses_.try_emplace(geometryKey(part));
+    if (fresh) {
+        if (const auto* shape = std::get_if<shape::Shape>(&part.geometry))
+            place->second = scene::massOf(*shape, 1.0);
+        else
+            place->second = geometry::massOf(*geometry->mesh, 1.0);
+    }
+    auto body = place->second;
+    if (!body) return std::nullopt;
+    body->mass *= part.density;
+    body->inertia *= part.density;
+    return body;
+}
+
+std::string PartGeometries::notClosed(const scene::PartSpec& part) {
+    const PartSurface* geometry = of(part);
+    return geometry != nullptr ? geometry->not_closed : "it cannot be read";
 }
 
 double PartGeometries::remembered(const std::string& question, const std::function<double()>& reckon) {

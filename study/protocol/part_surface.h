@@ -3,11 +3,13 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/geometry/mass_properties.h"
 #include "core/geometry/triangle_tree.h"
 #include "core/scene/build_store.h"
 #include "core/scene/scene_spec.h"
@@ -20,6 +22,7 @@ struct PartSurface {
     Vec3 size = Vec3::Zero();  // [m]
     double area = 0.0;         // of the surface, of shapes roughly: without bores, chamfers, keys [m²]
     bool sheet = false;        // has no inside
+    std::string not_closed;    // why it encloses no volume; empty: it does
     std::shared_ptr<const geometry::TriangleTree> tree;  // of a mesh; shared by the parts of one file
     std::shared_ptr<const geometry::TriangleMesh> mesh;  // likewise
     double longest() const { return size.maxCoeff(); }
@@ -44,6 +47,10 @@ public:
 
     /// Tells whether a search of thin() ended before it had come to all places.
     bool halfSearched(const scene::PartSpec& part) const { return half_searched_.count(geometryKey(part)) > 0; }
+
+    /// By the part's density; nothing if it encloses no volume, of which notClosed() tells why.
+    std::optional<geometry::MassProperties> massOf(const scene::PartSpec& part);
+    std::string notClosed(const scene::PartSpec& part);
 
     /// Signed distance of `p` (part frame) from the part [m], positive outside; of a sheet unsigned. @pre of(part)
     double signedDistance(const scene::PartSpec& part, const Vec3& p);
@@ -73,6 +80,7 @@ private:
     std::set<std::string> half_searched_;
     std::map<std::string, double> remembered_;
     std::map<std::string, Ball> balls_;
+    std::map<std::string, std::optional<geometry::MassProperties>> unit_masses_;  // of density 1
 };
 
 }  // namespace passung::protocol

@@ -34,6 +34,7 @@ std::string partJson(const scene::PartSpec& part) {
             .number("metres_per_unit", mesh.metres_per_unit);
     }
     json.number("friction", part.friction).number("sliding_friction", part.sliding_friction);
+    if (part.density > 0.0) json.number("density_kg_per_m3", part.density);
     return json.json("pose", poseJson(part.X_WP)).json("shown_offset_m", jsonVector(part.shown_offset)).str();
 }
 
@@ -145,6 +146,8 @@ std::string effectsJson(const scene::Effects& effects) {
                                     .number("frequency_hz", effects.transients.frequency)
                                     .number("decay_s", effects.transients.decay)
                                     .str());
+    if (!effects.weight.gravity.isZero(0.0))
+        json.json("weight", JsonObject().json("gravity_m_per_s2", jsonVector(effects.weight.gravity)).str());
     return json.str();
 }
 

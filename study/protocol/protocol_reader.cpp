@@ -37,6 +37,7 @@
 #include "study/protocol/texts_reader.h"
 #include "study/protocol/trial_types.h"
 #include "study/protocol/view_reader.h"
+#include "study/protocol/weight_check.h"
 
 namespace passung::protocol {
 namespace {
@@ -361,6 +362,9 @@ private:
             checkFelt(tables.scene, "scene", condition.scene, geometries_, undoable_, warnings_);
         if (condition.comparison && errors_.size() == before)
             checkFelt(tables.scene, "scene", *condition.comparison, geometries_, undoable_, warnings_);
+        if (content.sound) checkWeight(tables.scene, "scene", condition.scene, geometries_, undoable_, warnings_);
+        if (condition.comparison && errors_.size() == before)
+            checkWeight(tables.scene, "scene", *condition.comparison, geometries_, undoable_, warnings_);
         warnOfTolerance(tables.scene, "scene", warnings_);
         if (content.sound) checkStartPose(tables.scene, "scene", condition.scene, geometries_, undoable_);
         if (errors_.size() == before && pair)

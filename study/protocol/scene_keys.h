@@ -47,6 +47,7 @@ inline constexpr std::array kSceneKeys{
     Key{"part", "hand", Name, kAny, "", "(the first)", "Name of the hand that holds the part, one of `[[hand]]`; needs held = true."},
     Key{"part", "friction", Number, from(0, 10), "", "0", "Coefficient at rest. Two parts rub with the geometric mean of theirs: 0 on either side is none. God objects only."},
     Key{"part", "sliding_friction", Number, from(0, 10), "", "(as `friction`)", "Coefficient while sliding; at most `friction`."},
+    Key{"part", "density_kg_per_m3", Number, from(0, 30000), "", "0", "Density of the part, all through: with effects.weight the held part weighs its volume times this. 0: nothing. The part has to enclose a volume: no sheet, no mesh with holes."},
     Key{"part", "shown_offset", LengthVector, kAny, "", "(zero)", "Distance from where the part is touched to where the part is drawn, along the world's axes; not for the held part."},
     Key{"part", "unit", Choice, kAny, "um|mm|cm|m|in", "(the scene's)", "Unit of this part's lengths."},
 
@@ -157,11 +158,15 @@ inline constexpr std::array kSceneKeys{
     Key{"effects", "passivity_controller", Table, kAny, "", "(none)", "A damper that takes energy back where the controller gave more than it took in; the account itself is always recorded."},
     Key{"effects", "transients", Table, kAny, "", "(none)", "Event-based transients: a decaying vibration in proportion to the speed, added at every impact, as a tap on something hard gives."},
 
+    Key{"effects", "weight", Table, kAny, "", "(none)", "Weight of the held part, by its density_kg_per_m3: felt in the air, not where the part lies. The part hangs from the hand by its weight over the stiffness: `explain` says how far. It has no inertia."},
+
     Key{"effects.passivity_controller", "max_damping_Ns_per_m", Number, above(0), "", "!", "Largest damping; a mass m cannot bear more than about m / (1 ms)."},
 
     Key{"effects.transients", "amplitude_Ns_per_m", Number, above(0), "", "!", "Force of the vibration per speed of the impact. The device's limits hold for contact and vibration together."},
     Key{"effects.transients", "frequency_hz", Number, aboveUpTo(0, 400), "", "!", "Frequency of the vibration."},
     Key{"effects.transients", "decay_ms", Number, aboveUpTo(0, 1000), "", "!", "Time in which the vibration falls to 37 %."},
+
+    Key{"effects.weight", "gravity_m_per_s2", Vector, kAny, "", "([0, 0, -9.80665])", "Gravity along the world's axes, at most 100 long; zero: no weight."},
 };
 // clang-format on
 

@@ -13,6 +13,7 @@
 #include "core/scene/part.h"
 #include "study/protocol/felt_features.h"
 #include "study/protocol/scene_node.h"
+#include "study/protocol/weight_check.h"
 
 namespace passung::protocol {
 namespace {
@@ -20,6 +21,7 @@ namespace {
 constexpr double kDefaultStiffness = 1000.0;         // [N/m], without a device
 constexpr double kDefaultRotationalStiffness = 1.0;  // [N·m/rad], without a device
 constexpr double kHardness = 10.0;                   // of a coupled penalty's contacts, per stiffness of the coupling
+constexpr double kMostGravity = 100.0;               // [m/s²]
 constexpr double kToolShare = 0.1;                   // of a virtual tool's inertia, per the device's
 
 /// Names of the scene's hands but the first; empty where there is none, which is told elsewhere.
@@ -365,6 +367,13 @@ scene::Effects readEffects(const TableReader& read, Errors& errors) {
                               .frequency = transients.number("frequency_hz"),
                               .decay = transients.number("decay_ms")};
     }
+    if (const Node* node = read.node("weight")) {
+        const TableReader weight(*node, {"effects.weight"}, read.pathOf("weight"), errors);
+        effects.weight.gravity = weight.has("gravity_m_per_s2") ? weight.vector("gravity_m_per_s2")
+                                                                : Vec3(0.0, 0.0, -scene::kStandardGravity);
+        if (!(effects.weight.gravity.norm() <= kMostGravity))
+            weight.fail("gravity_m_per_s2", fmt::format("must be no longer than {}", kMostGravity));
+    }
     return effects;
 }
 
@@ -461,6 +470,7 @@ Result<SceneOnDevice> readSceneOnDevice(const std::string& text, const std::stri
     auto content = readSceneNode(*document, {"scene"}, "", {devices, geometries}, errors);
     std::vector<std::string> warnings;
     if (content.sound) checkFelt(*document, "", content.scene, geometries, errors, warnings);
+    if (content.sound) checkWeight(*document, "", content.scene, geometries, errors, warnings);
     warnOfTolerance(*document, "", warnings);
     if (content.accuracy_budget > 0.0)
         errors.push_back(errorAt(document->find("contact")->find("accuracy")->place, "contact.accuracy", "\"auto\"",

@@ -6,6 +6,7 @@
 #include "core/base/digest.h"
 #include "core/base/regular_file.h"
 #include "core/scene/contact_geometry.h"
+#include "core/scene/part_mass.h"
 #include "core/tick/scene_sequence.h"
 #include "study/protocol/document.h"
 #include "study/run/files/builds.h"
@@ -79,12 +80,29 @@ void printSpared(const scene::Scene& scene) {
          fmt::format("nobody holds either of them; {} of {} parts rest", still, scene.parts.size()));
 }
 
+/// Of the held part, if the scene has gravity: what is felt and seen of it, and what is not.
+void printWeight(const scene::Scene& scene) {
+    const scene::PartSpec& held = scene.spec.parts[scene.held];
+    if (!(held.density > 0.0) || scene.spec.effects.weight.gravity.isZero(0.0)) return;
+    const auto body = scene::massOf(*scene.parts[scene.held], held.density);
+    const auto weight = body ? scene::weigh(scene.spec, *body) : std::nullopt;
+    if (!weight) return;
+    const Vec3 centre = 1e3 * body->centre, inertia = 1e6 * body->inertia.diagonal();
+    fmt::print("  {:<22}{} {}\n", "weight", held.name, scene::describe(*weight));
+    fmt::print(
+        "  {:<22}centre of mass at {:.4g}, {:.4g}, {:.4g} mm; inertia about its x, y, z {:.3g}, {:.3g}, {:.3g} kg "
+        "mm²: not rendered{}\n",
+        "", centre.x(), centre.y(), centre.z(), inertia.x(), inertia.y(), inertia.z(),
+        weight->has_proxy ? ", as the proxy has no mass, so that it does not move the border of stability" : "");
+}
+
 Result<Done> printStages(const scene::SceneSpec& spec, scene::PartCache& cache, ProgressLine& progress) {
     const auto scene = scene::buildScene(spec, cache);
     progress.show("");
     if (!scene) return scene.errors();
     printShapes(spec);
     printHands(spec);
+    printWeight(*scene);
     const scene::GeometryChoice choice = scene::geometryOf(spec);
     fmt::print("  {:<22}{}: {}\n", "geometry of contact", scene::geometryName(choice.geometry), choice.reason);
     fmt::print("  {:<22}{:>10}{:>10}  {}\n", "stage of the tick", "median µs", "p99 µs", "why it runs");

@@ -108,6 +108,12 @@ QString orderWord(plan::BlockOrder order) {
     QT_TRANSLATE_NOOP("stages", "spring and damper between proxy and hand"),
     QT_TRANSLATE_NOOP("stages", "contact transients"),
     QT_TRANSLATE_NOOP("stages", "effects.transients is set: a decaying vibration is added at every impact"),
+    QT_TRANSLATE_NOOP("stages", "weight"),
+    QT_TRANSLATE_NOOP(
+        "stages", "effects.weight is set: the proxy hangs from the hand as far as its weight stretches the coupling"),
+    QT_TRANSLATE_NOOP("stages", "effects.weight is set: no proxy hangs from the hand, which holds the part itself"),
+    QT_TRANSLATE_NOOP("stages", "weight in the hand"),
+    QT_TRANSLATE_NOOP("stages", "effects.weight is set: what no contact carries is felt"),
     QT_TRANSLATE_NOOP("stages", "pushes between hands"),
     QT_TRANSLATE_NOOP("stages", "parts in different hands may touch: what pushes them is accounted for"),
     QT_TRANSLATE_NOOP("stages", "contact shares"),

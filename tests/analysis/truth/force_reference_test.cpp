@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "core/base/random.h"
 #include "tests/support/scenes.h"
@@ -74,6 +75,51 @@ TEST(ForceReference, OfAnUprightPegInABoreIsWhatThePullHasBeyondThePlay) {
     }
     // Beyond the plate's outer side: no reference.
     EXPECT_FALSE(reference.at({Quat::Identity(), Vec3(0.025, 0, 0.001)}, {Quat::Identity(), Vec3(0.025, 0, 0)}));
+}
+
+TEST(ForceReference, OfABallThatWeighsIsWhatTheTableDoesNotCarry) {
+    // Truth: closed form: f in the air, K h down to 0 on the table, the contact K h below it.
+    auto scene = sceneOf(shape::Sphere{0.02}, shape::Box{0.06, 0.06, 0.04});
+    scene.parts[0].density = 7850.0;
+    scene.effects.weight.gravity = Vec3(0, 0, -scene::kStandardGravity);
+    const ForceReference reference(scene);
+    const double f = 7850.0 * 4.0 / 3.0 * 3.14159265358979 * 1e-6 * scene::kStandardGravity;
+    const double lying = 0.03, hang = f / kStiffness;
+    for (const double h : {3.0 * hang, 0.7 * hang, 0.2 * hang, 0.0, -2.0 * hang}) {
+        const Pose shown{Quat::Identity(), Vec3(0, 0, lying + std::max(0.0, h - hang))};
+        const auto force = reference.at(shown, {Quat::Identity(), Vec3(0, 0, lying + h)});
+        ASSERT_TRUE(force) << h;
+        EXPECT_LE((*force - Vec3(0, 0, -std::min(f, kStiffness * h))).norm(), 1e-5) << h;
+    }
+}
+
+TEST(ForceReference, OfAPegThatWeighsIsThatOfTheTick) {
+    // Truth: independent program (least energy, without the tick's solver): a hand that tilts and drags a heavy peg in
+    // its bore. Its turn is held by the mouth, so that the weight's torque tells.
+    const shape::Peg peg{0.02, 0.05, 0.0005};
+    auto scene = sceneOf(peg, shape::BorePlate{.06, .06, .03, .0202, .025, .0005});
+    scene.parts[0].X_WP.p.z() = -0.015;
+    scene.parts[0].density = 7850.0;
+    scene.contact.geometry = scene::Geometry::ClosedForm;
+    scene.effects.weight.gravity = Vec3(0, 0, -scene::kStandardGravity);
+    const ForceReference reference(scene);
+    ASSERT_EQ(reference.missing(), "");
+    test::Bench bench(scene);
+    Pose shown = scene.parts[0].X_WP;
+    int compared = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const double t = 1e-3 * i;
+        const Pose hand{rotationFromVector(0.04 * Vec3(std::sin(3 * t), std::sin(2 * t), 0)),
+                        Vec3(4e-4 * std::sin(4 * t), 3e-4 * std::sin(5 * t), -0.0155 + 0.001 * std::sin(2.5 * t))};
+        const tick::TickOutput out = bench.step(hand);
+        const Pose before = std::exchange(shown, out.X_WG);
+        if (i < 100 || i % 10 != 0) continue;
+        const auto force = reference.at(before, hand);
+        if (!force) continue;
+        ++compared;
+        ASSERT_LE((*force - out.frame.F_H_W.force).norm(), 0.01) << i;
+    }
+    EXPECT_GT(compared, 100);
 }
 
 TEST(ForceReference, TellsWhyAPairHasNone) {

@@ -45,7 +45,7 @@ scene::SceneSpec pressing(scene::ContactMethod method) {
 
 /// The same with everything that a scene can name.
 scene::SceneSpec withEveryEffect(scene::SceneSpec spec) {
-    spec.effects = test::everyEffect();
+    test::addEveryEffect(spec);
     spec.limits.delay_ticks = 2;
     spec.contact.proxy_filter = 150;
     spec.contact.damping = 3;

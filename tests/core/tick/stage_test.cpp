@@ -53,7 +53,7 @@ scene::SceneSpec boxOverPlate(scene::ContactMethod method) {
     spec.limits.max_force = 3.0;
     spec.limits.max_speed = 2.0;
     spec.limits.quantum = 1e-5;
-    spec.effects = test::everyEffect();
+    test::addEveryEffect(spec);
     return spec;
 }
 
@@ -201,7 +201,7 @@ TEST(Stage, ReadsAndWritesWhatItDeclaresAndNothingElse) {
                 frame.reading = readingAt(i, random);
                 moveOther(bench.state(), i);
                 for (const tick::Stage& stage : bench.model().stages) {
-                    if (!stage.senses) bench.state().X_WT = frame.X_WH;
+                    if (!stage.senses) bench.state().X_WT = bench.state().X_WR;
                     bench.state().work = bench.model().hasSurfaces() ? tick::kSurfaceBudget : tick::kFieldBudget;
                     if (!bench.state().engaged && !stage.before_start) continue;
                     checker.checkThat(tick::AllStages{}, stage.run, bench.state(), frame);

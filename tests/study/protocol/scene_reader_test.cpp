@@ -6,7 +6,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/shape/shape.h"
 #include "tests/study/protocol/fake_devices.h"
+#include "tests/support/off_file.h"
+#include "tests/support/temp_folder.h"
 
 namespace passung::protocol {
 namespace {
@@ -419,6 +422,83 @@ TEST(SceneReader, BuildsTransientsOnlyIfTheyAreNamedAndComplete) {
     EXPECT_EQ(errorsOf(table), "s.toml:11:1: error: effects.transients.amplitude_Ns_per_m: required");
     EXPECT_EQ(errorsOf(table + "amplitude_Ns_per_m = 0\n"),
               "s.toml:14:22: error: effects.transients.amplitude_Ns_per_m: 0: must be > 0");
+}
+
+TEST(SceneReader, ReadsTheWeightOfTheHeldPartOnlyIfItIsNamed) {
+    // Truth: closed form: standard gravity (ISO 80000-3), down the world's z; density as written.
+    EXPECT_TRUE(read(kParts)->effects.weight.gravity.isZero(0.0));
+    EXPECT_EQ(read(kParts)->parts[1].density, 0.0);
+    const std::string heavy = kParts + "density_kg_per_m3 = 1200\n";
+    EXPECT_TRUE(read(heavy)->effects.weight.gravity.isZero(0.0));
+    EXPECT_EQ(read(heavy)->parts[1].density, 1200.0);
+    EXPECT_EQ(read(heavy + "[effects.weight]\n")->effects.weight.gravity, Vec3(0.0, 0.0, -9.80665));
+    EXPECT_EQ(read(heavy + "[effects.weight]\ngravity_m_per_s2 = [0, 1.62, 0]\n")->effects.weight.gravity,
+              Vec3(0.0, 1.62, 0.0));
+    EXPECT_EQ(errorsOf(kParts + "[effects.weight]\n"),
+              "s.toml:11:1: error: effects.weight: needs density_kg_per_m3 of the held part, peg");
+    EXPECT_EQ(errorsOf(kParts + "density_kg_per_m3 = -1\n"),
+              "s.toml:11:21: error: part.peg.density_kg_per_m3: -1: must be from 0 to 30000");
+    EXPECT_EQ(errorsOf(heavy + "[effects.weight]\ngravity_m_per_s2 = [0, 0, 9806]\n"),
+              "s.toml:13:20: error: effects.weight.gravity_m_per_s2: [0, 0, 9806]: must be no longer than 100");
+    EXPECT_EQ(errorsOf(heavy + "[effects.weight]\ngravity = 9.8\n"),
+              "s.toml:13:1: error: effects.weight.gravity: unknown key; did you mean \"gravity_m_per_s2\"?");
+}
+
+TEST(SceneReader, RefusesADensityOfWhatEnclosesNoVolume) {
+    // Truth: definition: a sheet, a mesh of which one triangle is missing, an open one; closed it is none. Density
+    // alone is enough, whether anything weighs or not.
+    const std::string held =
+        "[[part]]\nname = \"ball\"\nheld = true\nshape = { kind = \"sphere\", diameter = 9 }\npose "
+        "= { position = [0, 0, 90] }\n[[part]]\nname = \"a\"\n";
+    EXPECT_EQ(errorsOf(held + "shape = { kind = \"sheet\", width = 9, depth = 9 }\ndensity_kg_per_m3 = 1\n"),
+              "s.toml:9:21: error: part.a.density_kg_per_m3: 1: needs a part that encloses a volume: it is a sheet");
+    const test::TempFolder folder;
+    const auto errorsWith = [&](const geometry::TriangleMesh& mesh) {
+        test::writeOff(folder / "a.off", mesh);
+        return errorsOf(held + "unit = \"m\"\nmesh = \"" + folder / "a.off" + "\"\ndensity_kg_per_m3 = 1\n");
+    };
+    geometry::TriangleMesh mesh = shape::tessellate(shape::Box{0.02, 0.03, 0.05}, 1e-5);
+    EXPECT_EQ(errorsWith(mesh), "");
+    mesh.triangles.pop_back();
+    EXPECT_EQ(
+        errorsWith(mesh),
+        "s.toml:10:21: error: part.a.density_kg_per_m3: 1: needs a part that encloses a volume: its mesh has 1 hole");
+    mesh.triangles.resize(2);
+    EXPECT_EQ(
+        errorsWith(mesh),
+        "s.toml:10:21: error: part.a.density_kg_per_m3: 1: needs a part that encloses a volume: its mesh is an open "
+        "sheet");
+}
+
+TEST(SceneReader, RefusesAWeightThatTheDeviceOrTheCouplingCannotCarry) {
+    // Truth: closed form: a cylinder of 20 mm and 50 mm at 7850 kg/m³ weighs 1.209 N, 25 mm from the tip: 0.0302 Nm.
+    const std::string parts =
+        "[[part]]\nname = \"box\"\nshape = { kind = \"box\", width = 9, depth = 9, height = 9 }\n"
+        "[[part]]\nname = \"peg\"\nheld = true\nshape = { kind = \"peg\", diameter = 20, length = "
+        "50 }\npose = { position = [0, 0, 30] }\ndensity_kg_per_m3 = 7850\n[effects.weight]\n";
+    EXPECT_EQ(errorsOf(parts), "");
+    EXPECT_EQ(
+        errorsOf(parts + "[device]\nmax_force_N = 1\n"),
+        "s.toml:9:21: error: part.peg.density_kg_per_m3: 7850: the part weighs 1.21 N: more than the 1 N that the "
+        "device may show");
+    EXPECT_EQ(
+        errorsOf(parts + "[contact]\nrotational_stiffness_Nm_per_rad = 0.02\n"),
+        "s.toml:12:35: error: contact.rotational_stiffness_Nm_per_rad: 0.02: the held part's weight, up to 0.0302 "
+        "Nm about its origin, would turn it by 1.5 rad against the hand: at least 0.0302, or an origin nearer to its "
+        "centre of mass");
+    const auto warnings = [&](const std::string& more) {
+        const auto scene = readSceneOnDevice(parts + more, "s.toml", fakeDevices());
+        EXPECT_TRUE(scene);
+        return scene->warnings;
+    };
+    EXPECT_EQ(warnings("[contact]\nstiffness_N_per_m = 2000\n"), std::vector<std::string>{});
+    EXPECT_EQ(
+        warnings("[contact]\nstiffness_N_per_m = 500\n"),
+        std::vector<std::string>{"effects.weight: the held part of 123 g weighs 1.21 N, up to 0.0302 Nm about its "
+                                 "origin; in the air it hangs 2.42 mm from the hand, turned by up to 1.7 deg; a "
+                                 "stiffer coupling holds it nearer"});
+    EXPECT_EQ(warnings("[contact]\nstiffness_N_per_m = 2000\nrotational_stiffness_Nm_per_rad = 0\n").size(), 1u);
+    EXPECT_EQ(warnings("[contact]\nmethod = \"penalty\"\nstiffness_N_per_m = 100\n"), std::vector<std::string>{});
 }
 
 TEST(SceneReader, RefusesAnOffsetPictureOfTheHeldPart) {

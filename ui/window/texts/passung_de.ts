@@ -2163,6 +2163,26 @@
         <translation>effects.transients ist gesetzt: Bei jedem Aufprall kommt eine abklingende Schwingung hinzu</translation>
     </message>
     <message>
+        <source>weight</source>
+        <translation>Gewicht</translation>
+    </message>
+    <message>
+        <source>effects.weight is set: the proxy hangs from the hand as far as its weight stretches the coupling</source>
+        <translation>effects.weight ist gesetzt: Der Proxy hängt so weit unter der Hand, wie sein Gewicht die Kopplung dehnt</translation>
+    </message>
+    <message>
+        <source>effects.weight is set: no proxy hangs from the hand, which holds the part itself</source>
+        <translation>effects.weight ist gesetzt: Kein Proxy hängt an der Hand, die das Teil selbst hält</translation>
+    </message>
+    <message>
+        <source>weight in the hand</source>
+        <translation>Gewicht in der Hand</translation>
+    </message>
+    <message>
+        <source>effects.weight is set: what no contact carries is felt</source>
+        <translation>effects.weight ist gesetzt: Was kein Kontakt trägt, wird gefühlt</translation>
+    </message>
+    <message>
         <source>contact shares</source>
         <translation>Kontaktanteile</translation>
     </message>
