@@ -45,6 +45,8 @@ const char* statusBitMeaning(TickStatus bit) {
             return "the tick's work was cut short and goes on in the next one: the proxy lags";
         case kLedOut:
             return "the held part was put where it overlaps: it is led out, and no contact counts";
+        case kWeighed:
+            return "the held part's weight is in the force (nothing to worry about)";
     }
     return nullptr;
 }

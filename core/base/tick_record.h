@@ -31,6 +31,7 @@ enum TickStatus : std::uint32_t {
     kWrenchWithheld = 1u << 17,   // the scene displays no wrench: zero, whatever contact asks for
     kSuspended = 1u << 18,        // the tick's work was not done: what is left of it goes on in the next tick
     kLedOut = 1u << 19,           // the held part was put where it overlaps: it is led out, and no contact counts
+    kWeighed = 1u << 20,          // the held part's weight is in the wrench: a force is no sign of contact
 };
 
 /// What a device reports for one tick.

@@ -27,7 +27,7 @@ void hangPart(const HandModel& model, const HandSample& hand, const InputGuard& 
 }
 
 void addWeight(const HandModel& model, const HandSample& hand, const Proxy& proxy, const Hang& hang, Pushes& pushes,
-               HandWrench& wrench) noexcept {
+               HandWrench& wrench, Report& report) noexcept {
     Wrench weight = weightOf(model, hand.X_WH.q);
     if (model.hasProxy()) {
         const Vec3 from_hand = rotationVector(proxy.X_WG.q * hand.X_WH.q.conjugate());
@@ -37,6 +37,7 @@ void addWeight(const HandModel& model, const HandSample& hand, const Proxy& prox
     pushes.pushes.back().wrench = hand.input_usable ? weight : Wrench{};
     wrench.F_H_W.force += weight.force;
     wrench.F_H_W.torque += weight.torque;
+    report.status |= kWeighed;
 }
 
 }  // namespace passung::tick

@@ -68,9 +68,10 @@ inline constexpr StageOf kWeight{
                         : "effects.weight is set: no proxy hangs from the hand, which holds the part itself";
          }}};
 
-/// After all that is told of contacts. Its share of the wrench is noted as a push of no obstacle.
+/// After all that is told of contacts. Its share of the wrench is noted as a push of no obstacle, and the record
+/// tells that it is there (kWeighed).
 void addWeight(const HandModel& model, const HandSample& hand, const Proxy& proxy, const Hang& hang, Pushes& pushes,
-               HandWrench& wrench) noexcept;
+               HandWrench& wrench, Report& report) noexcept;
 inline constexpr StageOf kWeightInHand{
     addWeight,
     {.name = "weight in the hand",

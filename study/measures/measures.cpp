@@ -248,8 +248,8 @@ Measure countOf(std::string name, std::string label) {
 }
 
 // Words shared by the formulas: a trial tick is a recorded tick with start tick ≤ tick < end tick. A contact tick is a
-// trial tick with |force| > 1e-6 N or |torque| > 1e-9 N·m or contacts > 0. The tip is the origin of the held part's
-// proxy; it is in the bore below the mouth and within the clearance + 0.2 mm (kWallGive) of the axis.
+// trial tick with |force| > 1e-6 N or |torque| > 1e-9 N·m or contacts > 0 (tick_facts.h). The tip is the origin of the
+// held part's proxy; it is in the bore below the mouth and within the clearance + 0.2 mm (kWallGive) of the axis.
 std::vector<Measure> commonMeasures() {
     return {
         {{"success", "Success", "1",
@@ -279,7 +279,8 @@ std::vector<Measure> commonMeasures() {
          finished},
         {{"approach_time_s", "Approach time", "s",
           "from the start tick to the first contact tick, or to the engagement tick if that is earlier; contact tick: "
-          "trial tick with |force| > 1e-6 N or |torque| > 1e-9 N m or contacts > 0, or with hand_depth_m > 0 where the "
+          "trial tick with |force| > 1e-6 N or |torque| > 1e-9 N m or contacts > 0, of a held part that weighs (status "
+          "bit 20) with contacts > 0 alone, or with hand_depth_m > 0 where the "
           "condition displays no force; engagement tick: first trial tick "
           "with a tip depth >= the engagement depth; tip depth: -z of the proxy's origin in the target's frame, "
           "counted only below the mouth and within the radial clearance + 0.2 mm of the bore's axis; time: as for the "

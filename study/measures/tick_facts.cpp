@@ -13,8 +13,8 @@ Vec3 toVec3(const std::array<float, 3>& values) { return {values[0], values[1], 
 }  // namespace
 
 bool isContact(const TickRecord& record) {
-    return record.contacts > 0 || toVec3(record.force_N).norm() > kNoForce ||
-           toVec3(record.torque_Nm).norm() > kNoTorque ||
+    const bool wrench = toVec3(record.force_N).norm() > kNoForce || toVec3(record.torque_Nm).norm() > kNoTorque;
+    return record.contacts > 0 || (wrench && (record.status & kWeighed) == 0) ||
            ((record.status & kWrenchWithheld) != 0 && record.hand_depth_m > 0.0f);
 }
 

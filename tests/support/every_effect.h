@@ -4,7 +4,7 @@
 
 namespace passung::test {
 
-/// Every effect, so that hands of a few centimetres a second reach it; weight only of held parts that have a density.
+/// Every effect, so that hands of a few centimetres a second reach it.
 /// The names of all stand here: a new one in scene::Effects stops the build.
 inline scene::Effects everyEffect() {
     const scene::Effects effects{
@@ -14,6 +14,13 @@ inline scene::Effects everyEffect() {
     };
     [[maybe_unused]] const auto& [passivity_damping, transients, weight] = effects;
     return effects;
+}
+
+/// The same in a scene, whose held parts weigh.
+inline void addEveryEffect(scene::SceneSpec& spec) {
+    spec.effects = everyEffect();
+    for (scene::PartSpec& part : spec.parts)
+        if (part.held) part.density = 7850.0;
 }
 
 }  // namespace passung::test

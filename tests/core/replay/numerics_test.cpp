@@ -53,6 +53,9 @@ constexpr std::uint64_t kClosedForm = 0x9a6ccf5c5185c6cfu;
 /// On surfaces, without the low-pass that they do not have.
 constexpr std::uint64_t kSurface = 0x819a7aeb2de9f838u;
 
+/// The same with weight.
+constexpr std::uint64_t kWeight = 0x3be8ace262a36b3fu;
+
 constexpr const char* kParts = R"(
 [[part]]
 name = "plate"
@@ -138,6 +141,9 @@ TEST(Numerics, EveryOutputBitOfFixedScenesIsThatOfItsNumber) {
     spec.contact.geometry = scene::Geometry::Surface;
     spec.contact.proxy_filter = 0.0;
     EXPECT_EQ(hex(hashOf(spec)), hex(kSurface)) << "surface" << advice;
+    for (scene::PartSpec& part : spec.parts) part.density = 7850.0;
+    spec.effects.weight.gravity = Vec3(0.0, 0.0, -scene::kStandardGravity);
+    EXPECT_EQ(hex(hashOf(spec)), hex(kWeight)) << "weight" << advice;
 }
 
 }  // namespace

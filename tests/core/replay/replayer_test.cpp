@@ -45,8 +45,7 @@ scene::SceneSpec pressing(scene::ContactMethod method) {
 
 /// The same with everything that a scene can name.
 scene::SceneSpec withEveryEffect(scene::SceneSpec spec) {
-    spec.effects = test::everyEffect();
-    spec.parts.front().density = 7850;
+    test::addEveryEffect(spec);
     spec.limits.delay_ticks = 2;
     spec.contact.proxy_filter = 150;
     spec.contact.damping = 3;

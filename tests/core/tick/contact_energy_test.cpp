@@ -95,7 +95,7 @@ scene::SceneSpec withEverything(ContactMethod method, bool two_way) {
     spec.contact.two_way = two_way;
     spec.contact.damping = 3.0;
     spec.contact.rotational_damping = 1e-3;
-    spec.effects = test::everyEffect();
+    test::addEveryEffect(spec);
     spec.limits.delay_ticks = 2;
     spec.limits.max_force = 2.0;
     spec.limits.max_torque = 0.01;

@@ -53,8 +53,7 @@ scene::SceneSpec boxOverPlate(scene::ContactMethod method) {
     spec.limits.max_force = 3.0;
     spec.limits.max_speed = 2.0;
     spec.limits.quantum = 1e-5;
-    spec.effects = test::everyEffect();
-    spec.parts.front().density = 8000.0;
+    test::addEveryEffect(spec);
     return spec;
 }
 

@@ -60,7 +60,7 @@ std::vector<std::pair<const char*, scene::SceneSpec>> everyKindOfScene() {
         scenes.back().second.contact.budget_nodes = 200;
         scenes.back().second.limits.delay_ticks = 2;
         scenes.back().second.start_gate = {0.02, 0.1, 50};
-        scenes.back().second.effects = test::everyEffect();
+        test::addEveryEffect(scenes.back().second);
         for (auto& part : scenes.back().second.parts) part.friction = part.sliding_friction = 0.3;
         scenes.emplace_back("god object, two-way, rough", pegAndPlate(method));
         scenes.back().second.contact.two_way = true;

@@ -36,6 +36,18 @@ TEST(TickFacts, WithoutADisplayedWrenchTheHandsDepthTellsOfContact) {
     EXPECT_FALSE(isContact(inside));
 }
 
+TEST(TickFacts, AWeightIsNoContact) {
+    // Truth: closed form (definition)
+    TickRecord hanging;
+    hanging.force_N = {0.0f, 0.0f, -1.2f};
+    hanging.torque_Nm = {0.01f, 0.0f, 0.0f};
+    EXPECT_TRUE(isContact(hanging));
+    hanging.status = kWeighed;
+    EXPECT_FALSE(isContact(hanging));
+    hanging.contacts = 1;
+    EXPECT_TRUE(isContact(hanging));
+}
+
 TEST(TickFacts, TipIsInTheBoreBelowTheMouthAndWithinTheClearanceAndTheWallsGive) {
     // Truth: closed form. Target's mouth at z = 0.25; 0.1 mm of clearance and 0.2 mm of give end 0.3 mm beside the
     // axis, diagonally at 0.212 mm each.

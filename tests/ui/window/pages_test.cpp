@@ -435,7 +435,7 @@ std::vector<StageText> stageTexts() {
             spec.record_hand_depth = true;
             spec.start_gate.hold_ticks = 10;
             spec.limits.delay_ticks = 1;
-            spec.effects = test::everyEffect();
+            test::addEveryEffect(spec);
             spec.display_wrench = false;
             const auto scene = scene::buildScene(spec, cache);
             if (!scene) throw std::runtime_error(toString(scene.errors().front()));
