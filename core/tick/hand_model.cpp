@@ -93,7 +93,7 @@ void addFriction(HandModel& model, const scene::Scene& scene) {
 }
 
 /// What gravity does to the held part, if the scene asks for it.
-void addWeight(HandModel& model, const scene::Scene& scene) {
+void addGravity(HandModel& model, const scene::Scene& scene) {
     const double density = scene.spec.parts[model.body].density;
     if (scene.spec.effects.weight.gravity.isZero(0.0) || !(density > 0.0)) return;
     const auto mass = scene::massOf(*scene.parts[model.body], density);
@@ -135,7 +135,7 @@ HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size
     model.first_triangles = world.first_triangles;
     model.finest_cell = finestCellOf(model);
     addFriction(model, scene);
-    addWeight(model, scene);
+    addGravity(model, scene);
     const double ratio = spec.contact.rotational_stiffness / spec.contact.stiffness;
     model.metric_radius = ratio > 0.0 ? std::sqrt(ratio) : std::max(gyrationRadius(model, scene), 1e-6);
     model.margins = marginsOf(model);

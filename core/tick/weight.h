@@ -29,9 +29,9 @@ struct Hang {
 /// (virtual_coupling.h), and what is left, which the second stage adds.
 ///
 /// Limit cases: in the air G = R: F = f and T = τ, exactly, as exp and log undo each other up to half a turn
-/// (kMostHangingTurn). On a table: 0 where the hand is as low as the part, f again where it is f/K above, between them
-/// what is left of f. Pressed down: the contact alone. K_φ = 0: F alone; nothing shows a torque. Without a proxy
-/// (penalty at the hand, no obstacle) the grip is rigid: R = H, the weight is added as it is, and a contact's own
+/// (scene::kMostHangingTurn). On a table: 0 where the hand is as low as the part, f again where it is f/K above,
+/// between them what is left of f. Pressed down: the contact alone. K_φ = 0: F alone; nothing shows a torque. Without a
+/// proxy (penalty at the hand, no obstacle) the grip is rigid: R = H, the weight is added as it is, and a contact's own
 /// springs carry it: |f|/K of overlap do.
 /// A penalty's tool: between hand and contact in the ratio of their springs; F is as exact as the tool settles.
 /// On a part in another hand: as on a table, and felt there (hand_balance.h).
@@ -39,8 +39,9 @@ struct Hang {
 /// with it. So the wrench in the air follows from the hand's pose alone and has a potential, -f · (x_H + R_H c).
 /// Not conserved: where a contact turns the part by ψ against the hand, τ is off by up to |f||c||ψ|, and a closed way
 /// of the part's turn α may give or take |f||c||ψ| α.
-/// Inertia: none is rendered. The proxy has no mass, and a hand that shakes the part feels its weight and no more.
-inline constexpr double kMostHangingTurn = scene::kMostHangingTurn;
+/// Stability: against turning, the weight is a spring of at most |f||c| a radian, no stiffer than K_φ by that; against
+/// moving it is none. Inertia: none is rendered. The proxy has no mass, and a hand that shakes the part feels its
+/// weight and no more.
 
 /// What gravity does to the part at this orientation of it: about its origin, world axes. rt-safe.
 Wrench weightOf(const HandModel& model, const Quat& R_WG) noexcept;

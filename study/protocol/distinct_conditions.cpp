@@ -1,5 +1,7 @@
 #include "study/protocol/distinct_conditions.h"
 
+#include <algorithm>
+
 #include "study/protocol/plan_json.h"
 
 namespace passung::protocol {
@@ -24,10 +26,22 @@ void dropDeadFeedback(plan::Condition& condition) {
     if (!cues.audio) cues.sound_decay = unsaid.sound_decay;
 }
 
+/// A density reaches nobody but as the weight of what is held, nor gravity but by a density.
+void dropDeadWeight(scene::SceneSpec& scene) {
+    bool weighs = false;
+    for (scene::PartSpec& part : scene.parts) {
+        if (!part.held || scene.effects.weight.gravity.isZero(0.0)) part.density = 0.0;
+        weighs = weighs || part.density > 0.0;
+    }
+    if (!weighs) scene.effects.weight = {};
+}
+
 }  // namespace
 
 std::string whatReaches(plan::Condition condition) {
     dropDeadFeedback(condition);
+    dropDeadWeight(condition.scene);
+    if (condition.comparison) dropDeadWeight(*condition.comparison);
     std::string meshes;
     if (condition.comparison)
         for (auto& part : condition.comparison->parts)
@@ -54,6 +68,12 @@ std::string deadFeedback(const plan::Condition& a, const plan::Condition& b) {
         return "feedback.cue_full_depth_mm has no effect without the cue \"visual\" or \"vibrotactile\"";
     if (differ(&plan::Cues::full_speed) || differ(&plan::Cues::sound_decay))
         return "the keys of the cue \"audio\" have no effect without it";
+    const auto same_density = [](const scene::PartSpec& x, const scene::PartSpec& y) { return x.density == y.density; };
+    if (!std::equal(a.scene.parts.begin(), a.scene.parts.end(), b.scene.parts.begin(), b.scene.parts.end(),
+                    same_density))
+        return "density_kg_per_m3 has no effect without effects.weight, nor of a part that is not held";
+    if (a.scene.effects.weight.gravity != b.scene.effects.weight.gravity)
+        return "effects.weight has no effect where density_kg_per_m3 of the held part is 0";
     return "";
 }
 

@@ -124,8 +124,8 @@ TEST_P(WeightOf, APartInTheAirIsItsMassTimesGravityAtEveryOrientation) {
     // A tool with mass rests where less than kSettled of its equation is open: K D kSettled = 0.5 mN.
     EXPECT_LT(force_off, swings ? 1e-3 : 1e-6) << GetParam().name;
     EXPECT_LT(torque_off, 1e-6) << GetParam().name;
-    std::printf("%-24s force within %.1e, torque within %.1e of 200 orientations\n", GetParam().name, force_off,
-                torque_off);
+    std::printf("%-24s force within %.4f %%, torque within %.4f %% at 200 orientations\n", GetParam().name,
+                100.0 * force_off, 100.0 * torque_off);
 }
 
 TEST_P(WeightOfLying, APartOnATableIsNoneOnceTheHandIsDown) {
