@@ -120,9 +120,11 @@ std::optional<HeldWeight> weigh(const SceneSpec& scene, const geometry::MassProp
 }
 
 std::string describe(const HeldWeight& weight) {
-    const std::string weighs = "of " + number("%.3g g", 1e3 * weight.body.mass) + " weighs " +
-                               number("%.3g N", weight.force) + ", up to " + number("%.3g Nm", weight.torque) +
-                               " about its origin; in the air it ";
+    const std::string weighs =
+        "of " +
+        (weight.body.mass < 1.0 ? number("%.3g g", 1e3 * weight.body.mass) : number("%.3g kg", weight.body.mass)) +
+        " weighs " + number("%.3g N", weight.force) + ", up to " + number("%.3g Nm", weight.torque) +
+        " about its origin; in the air it ";
     if (!weight.has_proxy) return weighs + "is where the hand is";
     return weighs + "hangs " + number("%.3g mm", 1e3 * weight.sag) + " from the hand, turned by up to " +
            number("%.2g deg", 180.0 / std::numbers::pi * weight.turn);

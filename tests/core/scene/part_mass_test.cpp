@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/base/random.h"
+#include "core/scene/scene.h"
 #include "tests/support/off_file.h"
 #include "tests/support/temp_folder.h"
 
@@ -99,6 +100,67 @@ TEST(PartMass, IsThereOnlyWhereAVolumeIsEnclosed) {
     EXPECT_FALSE(weighed("holed.off", box));
     box.triangles.resize(2);
     EXPECT_FALSE(weighed("sheet.off", box));
+}
+
+/// A cube of 1 kg whose origin is in a corner, above a plate.
+SceneSpec heavyCorner(const std::string& path) {
+    geometry::TriangleMesh mesh = shape::tessellate(shape::Box{0.1, 0.1, 0.1}, 1e-5);
+    for (Vec3& vertex : mesh.vertices) vertex += Vec3::Constant(0.05);
+    test::writeOff(path, mesh);
+    SceneSpec spec;
+    spec.parts.push_back({.name = "cube", .geometry = MeshFile{path, 1.0}, .X_WP = {}, .held = true, .density = 1e3});
+    spec.parts.push_back(
+        {.name = "plate", .geometry = shape::Box{0.1, 0.1, 0.01}, .X_WP = {Quat::Identity(), -Vec3::UnitZ()}});
+    spec.contact.method = ContactMethod::GodObject;
+    spec.contact.rotational_stiffness = 10.0;
+    spec.effects.weight.gravity = Vec3(0, 0, -10.0);
+    return spec;
+}
+
+TEST(HeldWeight, IsWhatTheCouplingIsStretchedAndTwistedBy) {
+    // Truth: closed form: 10 N, √3/2 · 0.1 m from the origin; 10 mm at 1000 N/m, 0.866 Nm / 10 Nm.
+    const test::TempFolder folder;
+    SceneSpec spec = heavyCorner(folder / "cube.off");
+    PartCache cache;
+    const auto scene = buildScene(spec, cache);
+    ASSERT_TRUE(scene) << toString(scene.errors().front());
+    const auto weight = weigh(spec, *massOf(*scene->parts[0], 1e3));
+    ASSERT_TRUE(weight);
+    EXPECT_NEAR(weight->force, 10.0, 1e-9);
+    EXPECT_NEAR(weight->torque, std::sqrt(0.75), 1e-9);
+    EXPECT_NEAR(weight->sag, 0.01, 1e-12);
+    EXPECT_NEAR(weight->turn, 0.1 * std::sqrt(0.75), 1e-9);
+    EXPECT_EQ(
+        describe(*weight),
+        "of 1 kg weighs 10 N, up to 0.866 Nm about its origin; in the air it hangs 10 mm from the hand, turned by "
+        "up to 5 deg");
+    spec.contact.method = ContactMethod::Penalty;
+    EXPECT_FALSE(weigh(spec, weight->body)->has_proxy);
+    spec.effects.weight = {};
+    EXPECT_FALSE(weigh(spec, weight->body));
+}
+
+TEST(HeldWeight, ThatTurnsThePartTooFarOrOfNoVolumeIsAnErrorOfTheScene) {
+    // Truth: definition. 0.866 Nm at 0.8 Nm/rad is more than a radian, without weight it is nothing; a sheet and a mesh
+    // with a hole weigh nothing, whoever holds them.
+    const test::TempFolder folder;
+    SceneSpec spec = heavyCorner(folder / "cube.off");
+    const auto errorOf = [](const SceneSpec& scene) {
+        PartCache cache;
+        const auto built = buildScene(scene, cache);
+        return built ? std::string() : toString(built.errors().front());
+    };
+    EXPECT_EQ(errorOf(spec), "");
+    spec.contact.rotational_stiffness = 0.8;
+    EXPECT_NE(errorOf(spec).find("part cube: density: the weight would turn the part by 1.1 rad"), std::string::npos);
+    spec.effects.weight = {};
+    EXPECT_EQ(errorOf(spec), "");
+    spec.parts[1].geometry = shape::Sheet{0.1, 0.1};
+    EXPECT_EQ(errorOf(spec), "");
+    spec.parts[1].density = 1.0;
+    EXPECT_NE(errorOf(spec).find("part plate: density: a sheet encloses no volume"), std::string::npos);
+    spec.parts[1].density = -1.0;
+    EXPECT_NE(errorOf(spec).find("must be ≥ 0"), std::string::npos);
 }
 
 }  // namespace
