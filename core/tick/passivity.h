@@ -20,19 +20,21 @@ namespace passung::tick {
 /// That is exact where one wrench was held: what the controller has taken in since the trial began. A passive one keeps
 /// E ≥ 0; what its springs hold counts as taken in and comes back. Rotation: with T̄ constant in base axes, exact to
 /// second order in |Δφ|.
-/// Weight: what lifting the part takes comes back with the part, whoever lets it down; a trial may begin aloft. So it
-/// is no part of E, which is E - U where the weight was sent, U the part's energy in the air at the believed pose y
-/// (liftEnergy): E ≥ 0 then says the same of contacts, dampers and whatever the weight was cut or held by. Limit cases:
-/// a part that is lifted and let down in the air → 0 throughout, but for what holding its torque for a tick gives out
-/// while it turns by ω, at most ½ |τ| ω² τ_tick a second; weight cut by the device's limits on the way up and not on
-/// the way down → less, what that gave out. The motion is known in encoder steps q only: the handle is within q/2 of
-/// its reading in every coordinate. Believed is the least motion that explains all readings, y_k = the place nearest to
-/// y_{k-1} within q/2 of reading k: a reading that steps on and back crossed the same border twice, and a slow handle
-/// is where its reading steps, half a step from both. (To book whole readings instead takes each press of a spring K by
-/// x and its release for K q x given out, also where the motors did no work.) |y - true place| ≤ q, so that E is off by
-/// less than q Σ|F_k - F_{k-1}|: a fast cycle may come out high by K q x. q = 0: the readings themselves. Limit cases:
-/// no motion or no wrench → E stays. A held sample books nothing until the next new one comes. After rejected samples
-/// the way between is not known and nothing is booked for it.
+/// The motion is known in encoder steps q only: the handle is within q/2 of its reading in every coordinate. Believed
+/// is the least motion that explains all readings, y_k = the place nearest to y_{k-1} within q/2 of reading k: a
+/// reading that steps on and back crossed the same border twice, and a slow handle is where its reading steps, half a
+/// step from both. (To book whole readings instead takes each press of a spring K by x and its release for K q x given
+/// out, also where the motors did no work.) |y - true place| ≤ q, so that E is off by less than q Σ|F_k - F_{k-1}|: a
+/// fast cycle may come out high by K q x. q = 0: the readings themselves. Limit cases: no motion or no wrench → E
+/// stays. A held sample books nothing until the next new one comes. After rejected samples the way between is not known
+/// and nothing is booked for it.
+///
+/// Weight: what lifting the part takes comes back with the part, whoever lets it down, and a trial may begin aloft. So
+/// that is left out of E: E - U, U the part's energy in the air at the believed place y (liftEnergy), booked where the
+/// weight was sent. E ≥ 0 then says the same of contacts, dampers and limits. Limit cases: a part that is lifted and
+/// let down in the air → 0 throughout, but for what holding its torque for a tick gives out while it turns by ω, at
+/// most ½ |τ| ω² τ_tick a second; a weight that the device's limits cut on the way up and not on the way down → less,
+/// by what that gave out.
 ///
 /// Stage, of every scene: E and the handle's velocity, from the sample and what was sent.
 void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSample& hand, const SentWrench& sent,

@@ -39,9 +39,11 @@ struct Hang {
 /// with it. So the wrench in the air follows from the hand's pose alone and has a potential, -f · (x_H + R_H c).
 /// Not conserved: where a contact turns the part by ψ against the hand, τ is off by up to |f||c||ψ|, and a closed way
 /// of the part's turn α may give or take |f||c||ψ| α.
-/// Stability: against turning, the weight is a spring of at most |f||c| a radian, no stiffer than K_φ by that; against
-/// moving it is none. Inertia: none is rendered. The proxy has no mass, and a hand that shakes the part feels its
-/// weight and no more.
+///
+/// Stability: against turning, the weight is a spring of at most |f||c| a radian, which is no more than K_φ; against
+/// moving it is none.
+///
+/// Inertia: none is rendered. The proxy has no mass, and a hand that shakes the part feels its weight and no more.
 
 /// What gravity does to the part at this orientation of it: about its origin, world axes. rt-safe.
 Wrench weightOf(const HandModel& model, const Quat& R_WG) noexcept;
