@@ -10,8 +10,8 @@ namespace passung::protocol {
 /// none of it, nor is feedback that the condition says but that has no effect in it.
 std::string whatReaches(plan::Condition condition);
 
-/// Why what two conditions say of feedback or weight makes no difference where they reach people alike; empty if they say
-/// the same.
+/// Why what two conditions say of feedback or weight makes no difference where they reach people alike; empty if they
+/// say the same.
 std::string deadFeedback(const plan::Condition& a, const plan::Condition& b);
 
 }  // namespace passung::protocol
