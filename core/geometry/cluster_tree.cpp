@@ -227,6 +227,11 @@ ClusterTree::ClusterTree(const TriangleMesh& mesh) : triangles_(mesh.triangles.s
 ClusterTree::ClusterTree(std::span<const PlacedTree> trees) {
     clusters_.resize(1);
     Joiner{*this}.join(0, trees);
+    for (std::vector<double>* coordinates : {&x_, &y_, &z_}) coordinates->shrink_to_fit();
+    clusters_.shrink_to_fit();
+    pieces_.shrink_to_fit();
+    bodies_.shrink_to_fit();
+    faces_.shrink_to_fit();
     for (const Cluster& cluster : clusters_) {
         if (!cluster.isFace()) continue;
         for (std::uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) {

@@ -43,6 +43,8 @@ struct ClosedFormMemory {
     static constexpr bool kHandedOn = true;
     closed_form::PoseSolver solver{{}};
     std::vector<closed_form::ContactSearch> at_hand;
+    geometry::NearList near_hand;
+    closed_form::SearchMemory search;
     closed_form::PairContacts found;
     bool has_thread = false;
 };

@@ -184,7 +184,7 @@ void push(const HandModel& model, HandState& state, std::size_t obstacle, const 
 }
 
 void forget(HeldTarget& target) noexcept {
-    for (ObstaclePush& of : target.from_hands) of = {};
+    target.from_hands.clear();
     target.contacts_of_hands = 0;
 }
 

@@ -13,15 +13,15 @@ namespace passung::tick {
 struct DelayLine {
     std::size_t place = 0;  // of this tick; the next one is the oldest
     std::array<Wrench, scene::kMaxDelayTicks + 1> delay_line{};
-    std::vector<Wrench> push_line;  // the same of the obstacles' pushes, tick by tick
+    std::vector<FewOfMany<Wrench>> push_line;  // the same of the obstacles' pushes
 };
 
 /// Owner: output limits. Read by the energy account.
 struct SentWrench {
-    Wrench last_sent;                                          // F_D_B of the previous tick
-    Wrench sent_at_sample;                                     // F_D_B of the last tick with a new sample
-    bool latched = false;                                      // a computed wrench was not finite
-    std::vector<Wrench> last_shares = std::vector<Wrench>(1);  // each pair's share of last_sent
+    Wrench last_sent;                  // F_D_B of the previous tick
+    Wrench sent_at_sample;             // F_D_B of the last tick with a new sample
+    bool latched = false;              // a computed wrench was not finite
+    FewOfMany<Wrench> last_shares{1};  // each pair's share of last_sent
 };
 
 /// What a wrench about the handle's origin in the device's base axes is on the held part: about its origin, world axes.

@@ -23,7 +23,7 @@ void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSa
     account.sent.force += sent.last_sent.force;
     account.sent.torque += sent.last_sent.torque;
     ++account.ticks;
-    for (std::size_t i = 0; i < accounts.pairs.size(); ++i) {
+    for (const std::uint32_t i : sent.last_shares.held()) {
         accounts.pairs[i].sent.force += sent.last_shares[i].force;
         accounts.pairs[i].sent.torque += sent.last_shares[i].torque;
     }
@@ -45,7 +45,8 @@ void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSa
         account.X_BD = X;
         account.has_sample = true;
         account.sent = Wrench{};
-        for (PairAccount& pair : accounts.pairs) pair.sent = Wrench{};
+        for (const std::uint32_t i : accounts.pairs.held()) accounts.pairs[i].sent = Wrench{};
+        accounts.pairs.letGo();
         account.ticks = 0;
     }
     record.energy = account.taken_in;
