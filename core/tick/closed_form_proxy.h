@@ -60,7 +60,8 @@ inline constexpr StageOf kClosedFormProxy{
     followInClosedForm,
     {.name = "closed-form proxy",
      .parameters = "contact.method, geometry, stiffness_N_per_m, rotational_stiffness",
-     .cost = "a look at the pairs' faces and edges and a motion under contacts for each sub-step, mostly two; bounds: "
+     .cost = "a look at the faces and edges of near pairs and a motion under contacts for each sub-step, mostly two; "
+             "bounds: "
              "kMostLooks, kHeuristicLooks, kMostMeetings",
      .needs = [](const HandModel& model) { return model.hasClosedForm(); },
      .reason =
@@ -101,7 +102,7 @@ inline constexpr StageOf kClosedFormDepth{
     measureClosedFormDepth,
     {.name = "closed-form hand depth",
      .parameters = "contact.record_hand_depth",
-     .cost = "a look at the pairs' faces and edges",
+     .cost = "a look at the faces and edges of near pairs",
      .needs = [](const HandModel& model) { return model.hasClosedForm() && model.record_hand_depth; },
      .reason = [](const HandModel&) { return "the overlap at the device's pose is measured and recorded"; }}};
 

@@ -35,7 +35,7 @@ void delayOutput(const HandModel& model, const HandSample& hand, DelayLine& line
 inline constexpr StageOf kOutputDelay{delayOutput,
                                       {.name = "output delay",
                                        .parameters = "device.delay_ticks",
-                                       .cost = "constant, and a little for each obstacle",
+                                       .cost = "constant, and a little for each obstacle that pushes",
                                        .before_start = true,
                                        .needs = [](const HandModel& model) { return model.limits.delay_ticks > 0; },
                                        .reason = [](const HandModel&) { return "device.delay_ticks is set"; }}};
@@ -47,7 +47,7 @@ inline constexpr StageOf kNoWrench{
     withholdWrench,
     {.name = "no wrench",
      .parameters = "feedback.kinesthetic",
-     .cost = "constant, and a little for each obstacle",
+     .cost = "constant, and a little for each obstacle that pushes",
      .before_start = true,
      .needs = [](const HandModel& model) { return !model.display_wrench; },
      .reason =
@@ -74,7 +74,7 @@ inline constexpr StageOf kOutputLimits{
     limitOutput,
     {.name = "output limits",
      .parameters = "device.max_force_N, max_torque_Nm, max_force_rate_N_per_s, device.registration",
-     .cost = "constant, and a little for each obstacle",
+     .cost = "constant, and a little for each obstacle that pushes",
      .before_start = true,
      .needs = [](const HandModel&) { return true; },
      .reason =

@@ -30,7 +30,7 @@ inline constexpr StageOf kContactsAtHand{
     findContactsAtHand,
     {.name = "contacts at the hand",
      .parameters = "contact.method, variant, mode, budget_nodes, two_way",
-     .cost = "a query of each obstacle, with two_way two",
+     .cost = "a query of each obstacle that is near, with two_way two",
      .needs = [](const HandModel& model) { return model.rendersAtHand(); },
      .reason =
          [](const HandModel& model) {
