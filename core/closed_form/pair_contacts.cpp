@@ -300,7 +300,13 @@ bool ContactSearch::place(const Pose& X_WO) noexcept {
     return true;
 }
 
-double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contacts, double most_lean) noexcept {
+double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept {
+    SearchMemory memory;
+    return find(X_WH, reach, contacts, memory);
+}
+
+double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contacts, SearchMemory& memory,
+                           double most_lean) noexcept {
     moveTo(X_WH);
     contacts.clear();
     overlap_ = 0.0;
@@ -308,7 +314,7 @@ double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contact
     double least = std::numeric_limits<double>::infinity();
     for (Meeting& meeting : meetings_) {
         if (!(boundOf(meeting) > reach)) {
-            look(placed, reach, false, meeting, [&](const LineView& view, const Touch& touch) {
+            look(placed, reach, false, meeting, memory, [&](const LineView& view, const Touch& touch) {
                 const Contact contact = contactOf(pair_, view, meeting.name, touch, most_lean);
                 overlap_ = std::max(overlap_, -contact.gap);
                 if (!(contact.lean > most_lean))
@@ -316,7 +322,7 @@ double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contact
                 else if (contact.gap < kTiedGap)
                     addTied(pair_, view, contact, most_lean, contacts);
             });
-            if (touches_.full()) contacts.setFull();
+            if (memory.touches.full()) contacts.setFull();
         }
         least = std::min(least, boundOf(meeting));
     }
@@ -324,7 +330,7 @@ double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contact
 }
 
 /// Begins with the meeting that was the deepest before: few others have to be looked at then.
-ContactSearch::Overlap ContactSearch::overlapAt(const Pose& X_WH) noexcept {
+ContactSearch::Overlap ContactSearch::overlapAt(const Pose& X_WH, SearchMemory& memory) noexcept {
     constexpr double kRounding = 1e-12;  // [m] between a touch's gap and its contact's
     moveTo(X_WH);
     PlacedPair placed(pair_, X_WH);
@@ -333,19 +339,24 @@ ContactSearch::Overlap ContactSearch::overlapAt(const Pose& X_WH) noexcept {
         const Meeting& meeting = meetings_[at];
         const double reach = std::min(0.0, kRounding - overlap.depth);
         if (!meeting.touches || boundOf(meeting) > (meeting.of_thread ? std::max(reach, meeting.reach) : reach)) return;
-        look(placed, reach, true, meetings_[at], [&](const LineView& view, const Touch& touch) {
+        look(placed, reach, true, meetings_[at], memory, [&](const LineView& view, const Touch& touch) {
             const double gap = gapOf(view, lumpOf(pair_, meetings_[at].name).faces, touch);
             if (!(-gap > overlap.depth)) return;
             overlap.depth = -gap;
             deepest_ = at;
         });
-        overlap.full = overlap.full || touches_.full();
+        overlap.full = overlap.full || memory.touches.full();
     };
     const std::size_t first = deepest_;
     if (first < meetings_.size()) lookAt(first);
     for (std::size_t at = 0; at < meetings_.size(); ++at)
         if (at != first) lookAt(at);
     return overlap;
+}
+
+ContactSearch::Overlap ContactSearch::overlapAt(const Pose& X_WH) noexcept {
+    SearchMemory memory;
+    return overlapAt(X_WH, memory);
 }
 
 /// A function with a gradient of length 1 changes by no more than its point moves.
@@ -362,27 +373,29 @@ bool ContactSearch::isSampled(const Meeting& meeting) const noexcept {
 }
 
 template <class Take>
-void ContactSearch::look(PlacedPair& placed, double reach, bool closely, Meeting& meeting, Take take) noexcept {
-    touches_.clear();
+void ContactSearch::look(PlacedPair& placed, double reach, bool closely, Meeting& meeting, SearchMemory& memory,
+                         Take take) noexcept {
+    Touches& touches = memory.touches;
+    touches.clear();
     const TouchName& name = meeting.name;
     const LineView& view = placed.view(name);
     const Lump& lump = lumpOf(pair_, name);
     const LinePiece piece = pieceOf(view.line, meeting.piece);
     double closer = -std::numeric_limits<double>::infinity();
     if (meeting.of_thread) {
-        if (!isSampled(meeting)) samples_.take(view.line, piece);
+        if (!isSampled(meeting)) memory.samples.take(view.line, piece);
         sampled_ = &meeting;
-        meeting.bound = searchAlongThread(view.line, piece, samples_, lump, reach, touches_);
+        meeting.bound = searchAlongThread(view.line, piece, memory.samples, lump, reach, touches);
     } else {
-        meeting.bound = name.core ? searchCore(view.line, lump, reach, touches_)
-                                  : searchEdge(view.line, lump, reach, touches_, closely ? &closer : nullptr);
+        meeting.bound = name.core ? searchCore(view.line, lump, reach, touches)
+                                  : searchEdge(view.line, lump, reach, touches, closely ? &closer : nullptr);
     }
     meeting.bound = std::max(meeting.bound, closer);
     meeting.reach = std::min(reach, 0.0);
     meeting.lever = (piece.middle - view.origin).norm() + piece.extent;
     meeting.way = way_;
     meeting.turn = turn_;
-    for (const Touch& touch : touches_.all()) take(view, touch);
+    for (const Touch& touch : touches.all()) take(view, touch);
 }
 
 std::optional<Contact> keptAt(const SolidPair& pair, const Pose& X_WH, const Contact& contact) noexcept {

@@ -50,6 +50,12 @@ struct SolidPair {
 /// A pair at a pose, with what follows from that for all of its lines.
 struct PlacedPair;
 
+/// Memory of a search, for as many as come one after the other: what one leaves in it is nobody's.
+struct SearchMemory {
+    Touches touches;
+    ThreadSamples samples;
+};
+
 /// Finds a pair's contacts at one pose after the other. What it knows of a line and a lump that are far from each other
 /// saves looks at them until the held part has moved so far that they could touch.
 class ContactSearch {
@@ -66,8 +72,10 @@ public:
 
     /// All contacts with a gap of at most `reach` and a lean of at most `most_lean`. Returns a way that no point of the
     /// held part has to go before the parts touch [m], proven where it is > 0. rt-safe.
-    double find(const Pose& X_WH, double reach, PairContacts& contacts,
+    double find(const Pose& X_WH, double reach, PairContacts& contacts, SearchMemory& memory,
                 double most_lean = std::numeric_limits<double>::infinity()) noexcept;
+    /// The same with memory of its own, for single looks.
+    double find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept;
     /// The most that any contact overlapped there, however it leant [m], ≥ 0.
     double foundOverlap() const noexcept { return overlap_; }
 
@@ -77,6 +85,7 @@ public:
     };
     /// That of all contacts that find() has at this pose, of which only those are looked for that can be deeper than
     /// what is found already. rt-safe.
+    Overlap overlapAt(const Pose& X_WH, SearchMemory& memory) noexcept;
     Overlap overlapAt(const Pose& X_WH) noexcept;
 
 private:
@@ -97,7 +106,8 @@ private:
     double boundOf(const Meeting& meeting) const noexcept;
     /// `closely`: for a bound that saves more looks than it costs where few are near.
     template <class Take>
-    void look(PlacedPair& placed, double reach, bool closely, Meeting& meeting, Take take) noexcept;
+    void look(PlacedPair& placed, double reach, bool closely, Meeting& meeting, SearchMemory& memory,
+              Take take) noexcept;
     bool isSampled(const Meeting& meeting) const noexcept;
 
     SolidPair pair_;
@@ -105,9 +115,7 @@ private:
     std::size_t deepest_ = 0;  // meeting of the last overlap
     Pose X_last_;
     double overlap_ = 0.0;
-    Touches touches_;  // of the last look
-    ThreadSamples samples_;
-    const Meeting* sampled_ = nullptr;  // whose line's piece they are of, at this pose
+    const Meeting* sampled_ = nullptr;  // whose line's piece the samples are of, at this pose
     double way_ = 0.0, turn_ = 0.0;     // that the held part has made [m], [rad]
 };
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "core/motion/active_set.h"
 
@@ -49,16 +51,18 @@ motion::Motion solved(const MotionMatrix& L, bool bent, const motion::Motion& v)
 
 }  // namespace
 
-PoseSolver::PoseSolver(std::span<const SolidPair> pairs)
-    : rows_(pairs.empty() ? 0 : kMostRows), prepared_(rows_.size()) {
-    std::size_t meetings = 1;
+PoseSolver::PoseSolver(std::span<const SolidPair> pairs, geometry::NearList near)
+    : near_(std::move(near)), rows_(pairs.empty() ? 0 : kMostRows), prepared_(rows_.size()) {
+    if (near_.hasAll()) {
+        all_.resize(pairs.size());
+        std::iota(all_.begin(), all_.end(), 0u);
+    }
     for (const SolidPair& pair : pairs) {
-        meetings += searches_.emplace_back(pair).meetings();
+        meetings_.push_back(static_cast<int>(searches_.emplace_back(pair).meetings()));
         reach_ = std::max(reach_, reachOf(*pair.held));
         sight_ = std::min({sight_, sightOf(*pair.held), sightOf(*pair.obstacle)});
         longest_way_ = std::min({longest_way_, 0.5 * thicknessOf(*pair.held), 0.5 * thicknessOf(*pair.obstacle)});
     }
-    most_looks_ = std::clamp(kMostMeetings / static_cast<int>(meetings), kFewestLooks, kMostLooks);
 }
 
 void PoseSolver::add(const Row& row) noexcept {
@@ -68,9 +72,23 @@ void PoseSolver::add(const Row& row) noexcept {
         full_ = true;
 }
 
+double PoseSolver::reachFor(const motion::Motion& wanted) const noexcept {
+    if (near_.hasAll()) return std::numeric_limits<double>::infinity();
+    const double way = wayOf(wanted);
+    double reach = kLeastNear;
+    while (reach < kNearWays * way) reach *= 2.0;
+    return reach;
+}
+
+/// No point of the held part goes farther.
+double PoseSolver::wayOf(const motion::Motion& u) const noexcept {
+    const double rho = searches_.empty() ? 1.0 : pair(0).metric_radius;
+    return u.head<3>().norm() + reach_ / rho * u.tail<3>().norm();
+}
+
 /// What the last look of a tick has found holds for the first one of the next.
-void PoseSolver::find(const Pose& X) noexcept {
-    if (isFound(X)) {
+void PoseSolver::find(const Pose& X, double reach) noexcept {
+    if (isFound(X) && !(reach > found_reach_)) {
         count_ = found_;
         for (std::size_t i = 0; i < count_; ++i) {
             rows_[i].from.push = 0.0;
@@ -81,10 +99,14 @@ void PoseSolver::find(const Pose& X) noexcept {
     X_found_ = X;
     count_ = 0;
     overlap_ = 0.0;
-    free_ = std::numeric_limits<double>::infinity();
+    free_ = found_reach_ = reach;
     full_ = false;
-    for (std::size_t p = 0; p < searches_.size(); ++p) {
-        free_ = std::min(free_, searches_[p].find(X, sight_, contacts_, kMostLean));
+    int meetings = 1;
+    const std::span<const std::uint32_t> near =
+        near_.hasAll() ? std::span<const std::uint32_t>(all_) : near_.within(X, reach);
+    for (const std::uint32_t p : near) {
+        meetings += meetings_[p];
+        free_ = std::min(free_, searches_[p].find(X, sight_, contacts_, memory_, kMostLean));
         overlap_ = std::max(overlap_, searches_[p].foundOverlap());
         full_ = full_ || contacts_.full();
         for (const Contact& contact : contacts_.all())
@@ -92,6 +114,7 @@ void PoseSolver::find(const Pose& X) noexcept {
                  .slides = contact.touch.kind != Touch::Kind::Fixed});
     }
     found_ = count_;
+    most_looks_ = std::clamp(kMostMeetings / meetings, kFewestLooks, kMostLooks);
 }
 
 double PoseSolver::distance(const Contact& contact, const HeldContact& old) const noexcept {
@@ -240,7 +263,7 @@ motion::Motion PoseSolver::step(const Pose& X, const motion::Motion& wanted, boo
 /// What of a look's motion is safe to make.
 motion::Motion PoseSolver::shortened(const motion::Motion& u) const noexcept {
     const double rho = searches_.empty() ? 1.0 : pair(0).metric_radius;
-    const double way = u.head<3>().norm() + reach_ / rho * u.tail<3>().norm();
+    const double way = wayOf(u);
     if (way < free_) return u;
     const double turn = u.tail<3>().norm() / rho, rise = reach_ * turn * turn / 8.0;
     const double share = std::min({longest_way_ / way, kLongestLook / u.norm(), std::sqrt(kMostRise / rise)});
@@ -261,15 +284,15 @@ motion::Motion PoseSolver::offRidge(const motion::Motion& way, const PoseMemory&
 ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most) noexcept {
     ConstrainedPose result{.X_WG = X_WG};
     way_.clear();
-    most = std::min(most, most_looks_);
     const double rho = searches_.empty() ? 1.0 : pair(0).metric_radius;
     Pose X = X_WG;
     double last = std::numeric_limits<double>::infinity();  // length of the last look's motion
     double astray = 0.0;                                    // of the motions since the last pose that counts
     bool left = false;                                      // a ridge
     for (int i = 0;; ++i) {
-        find(X);
         const motion::Motion wanted = wayTo(X, X_WH, rho);
+        find(X, reachFor(wanted));
+        if (i == 0) most = std::min(most, most_looks_);
         if (i == 0) allowed_ = std::max(0.0, overlap_ - kRepair);
         const bool kept = overlap_ <= allowed_ + kKeptOverlap;
         if (kept || i == 0) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/closed_form/pair_contacts.h"
+#include "core/geometry/near_list.h"
 #include "core/motion/active_set.h"
 
 namespace passung::closed_form {
@@ -52,6 +53,7 @@ inline constexpr double kLeastStiffness = 0.3;  // of the least eigenvalue of B
 inline constexpr double kHeldStiffness = 1e5;   // added to B along what holds
 inline constexpr double kHeldGap = 1e-6;        // of a row that holds, at most [m]
 inline constexpr int kKeptLooks = 6;
+inline constexpr double kNearWays = 4.0, kLeastNear = 4e-3;  // [m]
 
 /// Finds the pose nearest to the hand's without overlap, from a free one on:
 ///   min ½|x_H - x|² + ½ρ²|φ|²   s.t.   all gaps ≥ 0,
@@ -73,12 +75,17 @@ inline constexpr int kKeptLooks = 6;
 /// A look that goes round a bend ends in overlap of second order. Before the way has gone on by more than kMostAstray
 /// since the last pose that counts, a look makes no way but out of that overlap: so a straight line from one pose of
 /// way() to the next is as free as they are, give or take kMostRise, where the hand snaps past an edge too.
+/// Of many pairs a look takes those that are no farther away than kNearWays times its way to the hand, and kLeastNear,
+/// rounded up to a power of two of that (NearList). The way that is proven to be free ends there: what was not looked
+/// at is not come to, at no place of a look's motion. Where a power is passed at a pose that was looked at, it is
+/// looked at again.
 /// A start in overlap comes out by kRepair a solve, the deepest contacts first.
 /// What a solver knows of earlier poses changes its time, never its result.
 class PoseSolver {
 public:
-    /// The held part's pairs, with one ρ. Their solids outlive this.
-    explicit PoseSolver(std::span<const SolidPair> pairs);
+    /// The held part's pairs, with one ρ. Their solids outlive this. `near`: of the same parts, in this order; without
+    /// one all are near.
+    explicit PoseSolver(std::span<const SolidPair> pairs, geometry::NearList near = {});
 
     /// In at most `most` looks, and no more than kMostMeetings lets it have. rt-safe.
     ConstrainedPose solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most = kMostLooks) noexcept;
@@ -90,6 +97,8 @@ public:
 
     /// Poses without overlap that the last solve went through, from its start on: the proxy's way.
     std::span<const Pose> way() const noexcept { return way_.all(); }
+
+    geometry::NearList& near() noexcept { return near_; }
 
     const SolidPair& pair(std::size_t i) const noexcept { return searches_[i].pair(); }
 
@@ -110,7 +119,8 @@ private:
     bool isFound(const Pose& X) const noexcept {
         return X_found_ && X_found_->p == X.p && X_found_->q.coeffs() == X.q.coeffs();
     }
-    void find(const Pose& X) noexcept;
+    double reachFor(const motion::Motion& wanted) const noexcept;
+    void find(const Pose& X, double reach) noexcept;
     void remember(const Pose& X, const PoseMemory& memory) noexcept;
     motion::Motion step(const Pose& X, const motion::Motion& wanted, bool back, PoseMemory& memory) noexcept;
     void prepare(const MotionMatrix& L, bool bent) noexcept;
@@ -119,11 +129,16 @@ private:
     motion::Motion offRidge(const motion::Motion& way, const PoseMemory& memory) const noexcept;
     bool solveRows(const motion::Motion& wanted, motion::ActiveSet& active, motion::Motion& y) noexcept;
     void add(const Row& row) noexcept;
+    double wayOf(const motion::Motion& u) const noexcept;
     motion::Motion shortened(const motion::Motion& u) const noexcept;
     Row* successorOf(const HeldContact& old) noexcept;
     double distance(const Contact& contact, const HeldContact& old) const noexcept;
 
     std::vector<ContactSearch> searches_;
+    geometry::NearList near_;
+    std::vector<std::uint32_t> all_;  // pairs, where near_ has them all
+    std::vector<int> meetings_;       // of each search
+    SearchMemory memory_;
     int most_looks_ = kMostLooks;
     PairContacts contacts_;
     std::vector<Row> rows_;                    // kMostRows, the first `count_`
@@ -131,6 +146,7 @@ private:
     std::size_t count_ = 0, found_ = 0;        // rows; those of them that were found at `X_found_`
     double overlap_ = 0.0, free_ = 0.0;        // there; a way that is proven to be free [m]
     std::optional<Pose> X_found_;
+    double found_reach_ = 0.0;                        // how near pairs were looked at there [m]
     bool full_ = false;                               // there
     motion::Motion ridge_ = motion::Motion::Zero();   // of the last look: where its B curves down
     double reach_ = 0.0, longest_way_ = kLongestWay;  // of the held part's points

@@ -12,6 +12,13 @@ constexpr double kRounding = 1e-15;    // of a way in double precision [m]
 
 }  // namespace
 
+void Certificates::restart(double accuracy, const field::ReadChange& change) noexcept {
+    accuracy_ = accuracy;
+    change_ = change;
+    deepest = kNone;
+    if (look_ > 0) look_ += 2 * kPoses;  // all earlier looks are too long ago
+}
+
 void Certificates::begin(const Pose& X_FS) noexcept {
     if (spheres_.empty()) return;
     const View view{X_FS.q.toRotationMatrix(), X_FS.p};

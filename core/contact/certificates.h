@@ -32,7 +32,9 @@ public:
     Certificates(std::size_t spheres, double accuracy, const field::ReadChange& change = {})
         : spheres_(spheres), change_(change), accuracy_(accuracy) {}
 
-    /// A look begins. rt-safe, as all below.
+    /// Of another shell and field of no more spheres from now on: nothing is known. rt-safe, as all below.
+    void restart(double accuracy, const field::ReadChange& change = {}) noexcept;
+    /// A look begins.
     void begin(const Pose& X_FS) noexcept;
     /// True if no point in sphere `i`, which is around `centre`, is read below `limit`.
     bool above(std::uint32_t i, const Vec3& centre, double radius, double limit) noexcept;

@@ -32,6 +32,7 @@ struct ContactPoint {
 class ContactManifold {
 public:
     explicit ContactManifold(std::size_t capacity = 0) : points_(capacity) {}
+    std::size_t capacity() const noexcept { return points_.size(); }
     void clear() noexcept { count_ = 0; }
     /// Forgets all but the first `count`.
     void keepFirst(std::size_t count) noexcept { count_ = std::min(count, count_); }

@@ -143,10 +143,29 @@ struct ClusterTree::Builder {
 
 /// Trees as they are, under clusters of the boxes around them.
 struct ClusterTree::Joiner {
+    /// A tree, and how many triangles those before it have.
+    struct Part {
+        PlacedTree placed;
+        std::uint32_t triangles = 0;
+        Vec3 middle = Vec3::Zero();  // of its box
+    };
+
     ClusterTree& whole;
 
+    void joinAll(std::span<const PlacedTree> trees) {
+        std::vector<Part> parts;
+        for (const PlacedTree& tree : trees) {
+            const Bounds& box = tree.tree->bodies_.front().box;
+            parts.push_back(
+                {tree, static_cast<std::uint32_t>(whole.triangles_), tree.X * (0.5 * (box.low + box.high))});
+            whole.triangles_ += tree.tree->triangles_;
+        }
+        join(0, parts);
+    }
+
     /// One tree with its root at `self`.
-    void place(std::uint32_t self, const PlacedTree& part) {
+    void place(std::uint32_t self, const Part& of) {
+        const PlacedTree& part = of.placed;
         const ClusterTree& tree = *part.tree;
         const auto corners = static_cast<std::uint32_t>(whole.x_.size());
         const auto before = static_cast<std::uint32_t>(whole.clusters_.size()) - 1;  // of all but its root
@@ -158,11 +177,10 @@ struct ClusterTree::Joiner {
             cluster.centre = R * cluster.centre + part.X.p;
             cluster.normal = R * cluster.normal;
             cluster.first += corners;
-            cluster.triangle += static_cast<std::uint32_t>(whole.triangles_);
+            cluster.triangle += of.triangles;
             if (!cluster.isFace()) cluster.child += before;
             whole.clusters_[i == 0 ? self : before + i] = cluster;
         }
-        whole.triangles_ += tree.triangles_;
         const auto first = static_cast<std::uint32_t>(whole.faces_.size());
         for (const std::uint32_t face : tree.faces_) whole.faces_.push_back(face == 0 ? self : before + face);
         whole.bodies_.push_back(
@@ -177,8 +195,24 @@ struct ClusterTree::Joiner {
         return {centre - half, centre + half};
     }
 
-    void join(std::uint32_t self, std::span<const PlacedTree> parts) {
+    /// Those of one half beside those of the other: along the longest side of the box around their middles. So few that
+    /// it hardly matters stay in their order.
+    static void sortAside(std::span<Part> parts) {
+        if (parts.size() <= kInOrder) return;
+        Bounds box;
+        for (const Part& part : parts) box.extend(part.middle);
+        Eigen::Index axis = 0;
+        box.size().maxCoeff(&axis);
+        std::sort(parts.begin(), parts.end(), [axis](const Part& a, const Part& b) {
+            if (a.middle[axis] != b.middle[axis]) return a.middle[axis] < b.middle[axis];
+            return a.triangles < b.triangles;
+        });
+    }
+    static constexpr std::size_t kInOrder = 4;
+
+    void join(std::uint32_t self, std::span<Part> parts) {
         if (parts.size() == 1) return place(self, parts.front());
+        sortAside(parts);
         const auto child = static_cast<std::uint32_t>(whole.clusters_.size());
         whole.clusters_.resize(whole.clusters_.size() + 2);
         join(child, parts.first(parts.size() / 2));
@@ -226,7 +260,12 @@ ClusterTree::ClusterTree(const TriangleMesh& mesh) : triangles_(mesh.triangles.s
 
 ClusterTree::ClusterTree(std::span<const PlacedTree> trees) {
     clusters_.resize(1);
-    Joiner{*this}.join(0, trees);
+    Joiner{*this}.joinAll(trees);
+    for (std::vector<double>* coordinates : {&x_, &y_, &z_}) coordinates->shrink_to_fit();
+    clusters_.shrink_to_fit();
+    pieces_.shrink_to_fit();
+    bodies_.shrink_to_fit();
+    faces_.shrink_to_fit();
     for (const Cluster& cluster : clusters_) {
         if (!cluster.isFace()) continue;
         for (std::uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) {

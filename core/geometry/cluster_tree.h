@@ -46,7 +46,8 @@ struct PlacedTree {
 class ClusterTree {
 public:
     explicit ClusterTree(const TriangleMesh& mesh);
-    /// All of them as one, in the frame of their poses; triangles are numbered on from tree to tree. @pre not empty
+    /// All of them as one, in the frame of their poses, near ones beside each other; triangles are numbered on from
+    /// tree to tree. @pre not empty
     explicit ClusterTree(std::span<const PlacedTree> trees);
 
     /// The root is 0.

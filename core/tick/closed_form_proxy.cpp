@@ -45,7 +45,8 @@ std::vector<closed_form::SolidPair> pairsOf(const HandModel& model) {
 ClosedFormMemory closedFormMemory(const HandModel& model) {
     ClosedFormMemory memory;
     const auto pairs = pairsOf(model);
-    memory.solver = closed_form::PoseSolver(pairs);
+    memory.near_hand = nearListOf(model, 0.0);
+    memory.solver = closed_form::PoseSolver(pairs, memory.near_hand);
     for (const closed_form::SolidPair& pair : pairs) memory.at_hand.emplace_back(pair);
     memory.has_thread = closed_form::isThread(*model.held_solid) ||
                         std::any_of(model.obstacles.begin(), model.obstacles.end(),
@@ -99,8 +100,8 @@ void describeClosedForm(const HandModel&, const HeldTarget& target, const Proxy&
 void measureClosedFormDepth(const HandModel&, const HandSample& hand, ClosedFormMemory& memory, HandDepth& depth,
                             Report& report) noexcept {
     depth.hand_depth = 0.0;
-    for (closed_form::ContactSearch& search : memory.at_hand) {
-        const closed_form::ContactSearch::Overlap found = search.overlapAt(hand.X_WH);
+    for (const std::uint32_t i : memory.near_hand.within(hand.X_WH, 0.0)) {
+        const closed_form::ContactSearch::Overlap found = memory.at_hand[i].overlapAt(hand.X_WH, memory.search);
         depth.hand_depth = std::max(depth.hand_depth, found.depth);
         if (found.full) report.status |= kContactCap;
     }

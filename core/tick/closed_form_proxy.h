@@ -43,6 +43,8 @@ struct ClosedFormMemory {
     static constexpr bool kHandedOn = true;
     closed_form::PoseSolver solver{{}};
     std::vector<closed_form::ContactSearch> at_hand;
+    geometry::NearList near_hand;
+    closed_form::SearchMemory search;
     closed_form::PairContacts found;
     bool has_thread = false;
 };
@@ -58,7 +60,8 @@ inline constexpr StageOf kClosedFormProxy{
     followInClosedForm,
     {.name = "closed-form proxy",
      .parameters = "contact.method, geometry, stiffness_N_per_m, rotational_stiffness",
-     .cost = "a look at the pairs' faces and edges and a motion under contacts for each sub-step, mostly two; bounds: "
+     .cost = "a look at the faces and edges of near pairs and a motion under contacts for each sub-step, mostly two; "
+             "bounds: "
              "kMostLooks, kHeuristicLooks, kMostMeetings",
      .needs = [](const HandModel& model) { return model.hasClosedForm(); },
      .reason =
@@ -100,7 +103,7 @@ inline constexpr StageOf kClosedFormDepth{
     measureClosedFormDepth,
     {.name = "closed-form hand depth",
      .parameters = "contact.record_hand_depth",
-     .cost = "a look at the pairs' faces and edges",
+     .cost = "a look at the faces and edges of near pairs",
      .needs = [](const HandModel& model) { return model.hasClosedForm() && model.record_hand_depth; },
      .reason = [](const HandModel&) { return "the overlap at the device's pose is measured and recorded"; }}};
 

@@ -15,9 +15,7 @@ void add(ObstaclePush& push, const Wrench& more, double pressure) noexcept {
 
 }  // namespace
 
-void clearPushes(Pushes& pushes) noexcept {
-    for (ObstaclePush& push : pushes.pushes) push = ObstaclePush{};
-}
+void clearPushes(Pushes& pushes) noexcept { pushes.pushes.clear(); }
 
 void addPush(const HandModel& model, const Vec3& p_WG, const Vec3& point, const Vec3& along, double pressure,
              ObstaclePush& of) noexcept {
@@ -49,13 +47,15 @@ void sharePushes(const HandModel&, const HandSample& hand, const HandWrench& wre
     if (!hand.input_usable) clearPushes(pushes);
     double pressure = 0.0;
     Wrench rest = wrench.F_H_W;
-    for (const ObstaclePush& push : pushes.pushes) {
+    for (const std::uint32_t i : pushes.pushes.held()) {
+        const ObstaclePush& push = pushes.pushes[i];
         pressure += push.pressure;
         rest.force -= push.wrench.force;
         rest.torque -= push.wrench.torque;
     }
     if (!(pressure > 0.0)) return;
-    for (ObstaclePush& push : pushes.pushes) {
+    for (const std::uint32_t i : pushes.pushes.held()) {
+        ObstaclePush& push = pushes.pushes[i];
         const double share = push.pressure / pressure;
         push.wrench.force += share * rest.force;
         push.wrench.torque += share * rest.torque;
@@ -63,12 +63,13 @@ void sharePushes(const HandModel&, const HandSample& hand, const HandWrench& wre
 }
 
 void addHeldPushes(const HandModel&, const HeldTarget& target, Pushes& pushes) noexcept {
-    for (std::size_t i = 0; i < target.from_hands.size(); ++i)
+    for (const std::uint32_t i : target.from_hands.held())
         add(pushes.pushes[i], target.from_hands[i].wrench, target.from_hands[i].pressure);
 }
 
 void bookPairs(EnergyAccounts& accounts, const Vec3& moved, const Vec3& turned, int ticks) noexcept {
-    for (PairAccount& pair : accounts.pairs) {
+    for (const std::uint32_t i : accounts.pairs.held()) {
+        PairAccount& pair = accounts.pairs[i];
         pair.taken_in -= (pair.sent.force.dot(moved) + pair.sent.torque.dot(turned)) / ticks;
         pair.least = std::min(pair.least, pair.taken_in);
     }

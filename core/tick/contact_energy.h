@@ -40,7 +40,7 @@ inline constexpr StageOf kContactShares{
     sharePushes,
     {.name = "contact shares",
      .parameters = "",
-     .cost = "a little for each obstacle",
+     .cost = "a little for each obstacle that pushes",
      .needs = [](const HandModel& model) { return model.hasObstacles(); },
      .reason = [](const HandModel&) { return "always: the energy account is kept for each obstacle too"; }}};
 
@@ -50,7 +50,7 @@ inline constexpr StageOf kHeldPushes{
     addHeldPushes,
     {.name = "pushes between hands",
      .parameters = "",
-     .cost = "a little for each obstacle",
+     .cost = "a little for each obstacle that pushes",
      .needs = [](const HandModel& model) { return model.hasProxy() && !model.moving.empty(); },
      .reason = [](const HandModel&) { return "parts in different hands may touch: what pushes them is accounted for"; },
      .spared =

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <vector>
-
 #include "core/base/types.h"
+#include "core/tick/few_of_many.h"
 
 namespace passung::tick {
 
@@ -29,7 +28,8 @@ struct PairAccount {
 /// Owner: energy account.
 struct EnergyAccounts {
     EnergyAccount energy;
-    std::vector<PairAccount> pairs = std::vector<PairAccount>(1);  // of each obstacle, and of what none pushes: last
+    // Of each obstacle, and of what none pushes: last. Held: to which something was sent since the good sample before
+    FewOfMany<PairAccount> pairs{1};
 };
 
 /// What one obstacle does to the held part in this tick.
@@ -42,7 +42,7 @@ struct ObstaclePush {
 /// the weight, the output delay delays them, no wrench clears them.
 struct Pushes {
     static constexpr bool kHandedOn = true;
-    std::vector<ObstaclePush> pushes = std::vector<ObstaclePush>(1);  // as EnergyAccounts::pairs
+    FewOfMany<ObstaclePush> pushes{1};  // as EnergyAccounts::pairs; held: that push
 };
 
 }  // namespace passung::tick

@@ -18,11 +18,11 @@ struct Way {
     contact::ShellCertificates* known;
 };
 
-Way wayOf(const HandModel& model, const ObstaclePoses& obstacles, const FieldLook& look,
-          std::span<PairCertificates> known) noexcept {
-    const Obstacle& obstacle = model.obstacles[look.obstacle];
-    const Pose& X_WO = obstacles.X_WO[look.obstacle];
-    PairCertificates* const pair = known.empty() || look.proves ? nullptr : &known[look.obstacle];
+Way wayOf(const HandModel& model, const ObstaclePoses& obstacles, const FieldLook& look, KnownPairs& known) noexcept {
+    const std::uint32_t i = look.near[look.at];
+    const Obstacle& obstacle = model.obstacles[i];
+    const Pose& X_WO = obstacles.X_WO[i];
+    PairCertificates* const pair = look.proves ? nullptr : known.of(model, i);
     if (look.back)
         return {*model.held_field, look.X_WG, *obstacle.shell,
                 *obstacle.edges,   X_WO,      pair != nullptr ? &pair->obstacle : nullptr};
@@ -46,18 +46,18 @@ bool turnToNext(const HandModel& model, FieldLook& look) noexcept {
     look.along_edges = !look.along_edges;
     if (look.along_edges) return false;
     if (look.back) look.found.reverseFrom(look.first_of_way);
-    look.back = !look.back && model.obstacles[look.obstacle].shell != nullptr;
+    look.back = !look.back && model.obstacles[look.near[look.at]].shell != nullptr;
     look.first_of_way = look.found.size();
     if (look.back) return false;
-    look.found.assign(look.first_of_obstacle, look.obstacle);
+    look.found.assign(look.first_of_obstacle, look.near[look.at]);
     look.first_of_obstacle = look.first_of_way;
-    return ++look.obstacle == model.obstacles.size();
+    return ++look.at == look.near_count;
 }
 
 void startRound(FieldLook& look, bool proves) noexcept {
     look.proves = proves;
     look.along_edges = look.back = false;
-    look.obstacle = 0;
+    look.at = 0;
     look.first_of_way = look.first_of_obstacle = 0;
     look.clearance = look.clearance_bound = look.search;
     look.found.clear();
@@ -65,21 +65,25 @@ void startRound(FieldLook& look, bool proves) noexcept {
 
 }  // namespace
 
-void beginLook(FieldLook& look, const Pose& X_WG, double reach, double search) noexcept {
+void beginLook(FieldLook& look, const Pose& X_WG, double reach, double search, geometry::NearList& near) noexcept {
     look.open = true;
     look.X_WG = X_WG;
     look.reach = reach;
     look.search = search;
+    const auto found = near.within(X_WG, lookReach(std::max(reach, search)));
+    std::copy(found.begin(), found.end(), look.near.begin());
+    look.near_count = found.size();
     look.workspace.drop();
     look.edges.open = false;
     startRound(look, false);
 }
 
-bool goOnLooking(const HandModel& model, const ObstaclePoses& obstacles, FieldLook& look,
-                 std::span<PairCertificates> known, Report& report) noexcept {
+bool goOnLooking(const HandModel& model, const ObstaclePoses& obstacles, FieldLook& look, KnownPairs& known,
+                 Report& report) noexcept {
     const int budget = model.contact.budget_nodes;
     int left = budget;
-    for (bool ended = false; !ended;) {
+    known.begin();
+    for (bool ended = look.near_count == 0; !ended;) {
         const Way way = wayOf(model, obstacles, look, known);
         const contact::QueryRequest request = requestOf(model, look, left);
         const contact::QueryAnswer answer =
@@ -99,6 +103,10 @@ bool goOnLooking(const HandModel& model, const ObstaclePoses& obstacles, FieldLo
             if (!ended) startRound(look, true);
         }
         if (!look.along_edges) left = budget;
+    }
+    if (look.near_count == 0) {
+        look.nearest = look.clearance_bound = look.clearance;
+        look.proves = look.nearest > look.reach;
     }
     if (look.proves) look.clearance_bound = std::max(look.reach, look.clearance_bound);
     look.open = false;

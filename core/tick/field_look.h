@@ -16,10 +16,10 @@ namespace passung::tick {
 
 /// Begins a look from `X_WG`: contacts within `reach`, and up to `search` how far the nearest is if none is [m].
 /// rt-safe.
-void beginLook(FieldLook& look, const Pose& X_WG, double reach, double search) noexcept;
+void beginLook(FieldLook& look, const Pose& X_WG, double reach, double search, geometry::NearList& near) noexcept;
 
 /// Goes on with a look that is open, by a budget's worth; true: it has ended. rt-safe.
-bool goOnLooking(const HandModel& model, const ObstaclePoses& obstacles, FieldLook& look,
-                 std::span<PairCertificates> known, Report& report) noexcept;
+bool goOnLooking(const HandModel& model, const ObstaclePoses& obstacles, FieldLook& look, KnownPairs& known,
+                 Report& report) noexcept;
 
 }  // namespace passung::tick

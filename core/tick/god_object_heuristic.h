@@ -69,7 +69,7 @@ inline constexpr StageOf kProxyCorrection{
     correctProxy,
     {.name = "proxy correction",
      .parameters = "contact.method, mode, two_way",
-     .cost = "nothing, or a few queries of each obstacle; bound: kCorrections",
+     .cost = "nothing, or a few queries of each obstacle that is near; bound: kCorrections",
      .needs =
          [](const HandModel& model) {
              return model.hasFieldProxyOf(scene::ContactMethod::GodObjectHeuristic) && !model.hasNodeBudget();

@@ -197,7 +197,7 @@ void tellWays(std::span<const HandModel> models, std::span<HandState> states, st
 }
 
 void forget(HeldTarget& target) noexcept {
-    for (ObstaclePush& of : target.from_hands) of = {};
+    target.from_hands.clear();
     target.contacts_of_hands = 0;
 }
 

@@ -30,7 +30,7 @@ ProxyMargins marginsOf(const HandModel& model) {
 void addHeld(HandModel& model, const Body& held) {
     model.reach = held.reach;
     if (held.solid) {
-        model.held_solid = &*held.solid;
+        model.held_solid = held.solid;
     } else if (held.surface != nullptr) {
         model.held_surface = held.surface;
     } else {
@@ -51,7 +51,7 @@ void addObstacles(HandModel& model, const World& world) {
                                    .field = body.field,
                                    .shell = two_way ? body.shell : nullptr,
                                    .edges = two_way ? body.edges : nullptr,
-                                   .solid = body.solid ? &*body.solid : nullptr});
+                                   .solid = body.solid});
     }
 }
 
@@ -123,6 +123,20 @@ const char* contactInstead(const HandModel& model) noexcept {
     if (model.hasSurfaces()) return "contact is computed from surfaces";
     return model.contact.method == scene::ContactMethod::GodObject ? "contact.method is god_object"
                                                                    : "contact.method is god_object_heuristic";
+}
+
+geometry::NearList nearListOf(const HandModel& model, double beyond) {
+    std::vector<geometry::NearPart> parts;
+    for (const Obstacle& obstacle : model.obstacles) {
+        const Body& body = model.bodies[obstacle.body];
+        geometry::NearPart& part = parts.emplace_back(geometry::NearPart{body.box, body.X_WP_start, body.held});
+        const double more = beyond + (body.field != nullptr ? body.field->sheetOffset() : 0.0);
+        part.box.low.array() -= more;
+        part.box.high.array() += more;
+    }
+    geometry::NearList near(model.bodies[model.body].box, parts);
+    near.within(model.X_WG_start, 0.0);  // so that the first tick does not have to look at all
+    return near;
 }
 
 HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size_t hand) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/types.h"
+#include "core/geometry/near_list.h"
 #include "core/motion/friction.h"
 #include "core/tick/stage.h"
 #include "core/tick/world.h"
@@ -90,5 +91,9 @@ const char* contactInstead(const HandModel& model) noexcept;
 /// What the scene fixes for hand `hand`, and those of AllStages that it needs. `world` is the scene's and outlives the
 /// result. @pre `hand` < scene.spec.handCount()
 HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size_t hand);
+
+/// Its obstacles, with boxes that are `beyond` larger on every side, as far as sheets are felt in front of them too
+/// [m].
+geometry::NearList nearListOf(const HandModel& model, double beyond);
 
 }  // namespace passung::tick

@@ -11,49 +11,37 @@ namespace passung::tick {
 
 namespace {
 
-/// Empty ones, of each obstacle.
-std::vector<PairCertificates> certificatesOf(const HandModel& model) {
-    std::vector<PairCertificates> all;
-    // Cells of a size that was chosen take no tolerance.
-    const auto of = [&](const shell::SphereTree& shell, const shell::EdgeCurves& edges,
-                        const field::DistanceField& field) {
-        const double accuracy = std::max(model.contact.tolerance, model.contact.cell > 0.0 ? field.cell() : 0.0);
-        return contact::ShellCertificates{contact::Certificates(shell.nodes().size(), accuracy, field.change()),
-                                          contact::Certificates(edges.stretches().size(), accuracy)};
-    };
-    for (const Obstacle& obstacle : model.obstacles) {
-        PairCertificates pair;
-        pair.held = of(*model.shell, *model.edges, *obstacle.field);
-        if (obstacle.shell != nullptr) pair.obstacle = of(*obstacle.shell, *obstacle.edges, *model.held_field);
-        all.push_back(std::move(pair));
-    }
-    return all;
-}
-
 void addQueryMemory(const HandModel& model, Proxy& proxy, QueryMemory& memory) {
-    // When a budget ends a node stands in by a point and a sphere, and every obstacle may touch every point and every
-    // edge around every station.
+    // When a budget ends a node stands in by a point and a sphere, and an obstacle may touch every point and every edge
+    // around every station. One of them finds room so, and beside it half of the points once more, of whatever
+    // others are touched: more is kContactCap.
     const auto most = [](const shell::SphereTree& shell, const shell::EdgeCurves& edges) {
         return shell.points().size() + 2 * shell.nodes().size() + edges.stations().size();
     };
-    std::size_t capacity = most(*model.shell, *model.edges) * model.obstacles.size();
+    std::size_t points = 0, both = 0;  // of the largest obstacle's
     std::size_t nodes = model.shell->nodes().size();
     for (const Obstacle& obstacle : model.obstacles) {
         if (obstacle.shell == nullptr) continue;
-        capacity += most(*obstacle.shell, *obstacle.edges);
+        points = std::max(points, obstacle.shell->points().size());
+        both = std::max(both, most(*obstacle.shell, *obstacle.edges));
         nodes = std::max(nodes, obstacle.shell->nodes().size());
     }
+    const std::size_t once_more = model.obstacles.size() > 1 ? (model.shell->points().size() + points) / 2 : 0;
+    const std::size_t capacity =
+        model.hasObstacles() ? most(*model.shell, *model.edges) + both + once_more : std::size_t{0};
     proxy.manifold = contact::ContactManifold(capacity);
     memory.scratch = contact::ContactManifold(capacity);
     memory.workspace = contact::QueryWorkspace(nodes);
     if (model.hasNodeBudget()) {
         proxy.step.look.found = contact::ContactManifold(capacity);
         proxy.step.look.workspace = contact::QueryWorkspace(nodes);
+        proxy.step.look.near.resize(model.obstacles.size());
     }
     // Of answers from a part of a look not: what that leaves depends on what is looked at first.
     const bool partly = model.contact.budget_nodes > 0;
-    if (model.hasNodeBudget() || (model.hasFieldProxy() && !partly)) memory.near_proxy = certificatesOf(model);
-    if (!partly) memory.near_hand = certificatesOf(model);
+    memory.around_proxy = memory.around_hand = lookoutOf(model);
+    if (model.hasNodeBudget() || (model.hasFieldProxy() && !partly)) memory.around_proxy.known = KnownPairs(model);
+    if (!partly) memory.around_hand.known = KnownPairs(model);
 }
 
 }  // namespace
@@ -72,7 +60,9 @@ HandState makeHandState(const HandModel& model) {
     state.pairs.resize(model.obstacles.size() + 1);
     state.pushes.resize(state.pairs.size());
     state.last_shares.resize(state.pairs.size());
-    state.push_line.resize(state.pairs.size() * (static_cast<std::size_t>(model.limits.delay_ticks) + 1));
+    if (model.limits.delay_ticks > 0)
+        state.push_line.assign(static_cast<std::size_t>(model.limits.delay_ticks) + 1,
+                               FewOfMany<Wrench>(state.pairs.size()));
     if (model.hasClosedForm())
         static_cast<ClosedFormMemory&>(state) = closedFormMemory(model);
     else if (model.hasSurfaces())

@@ -63,8 +63,8 @@ contact::QueryAnswer queryBack(const HandModel& model, const Obstacle& obstacle,
 
 contact::QueryAnswer queryObstacles(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WS,
                                     contact::QueryRequest request, contact::QueryWorkspace& workspace,
-                                    contact::ContactManifold& manifold, std::span<ObstaclePush> pushes,
-                                    std::span<PairCertificates> known) noexcept {
+                                    contact::ContactManifold& manifold, Lookout& lookout, bool known,
+                                    FewOfMany<ObstaclePush>* pushes) noexcept {
     request.mode = model.contact.mode;
     request.max_nodes = model.contact.budget_nodes;
     contact::QueryAnswer all;
@@ -73,24 +73,28 @@ contact::QueryAnswer queryObstacles(const HandModel& model, const ObstaclePoses&
     const auto narrow = [&] {
         if (!request.refine) request.search_below = all.phi;
     };
-    std::uint32_t place = 0;
-    const auto take = [&](const contact::QueryAnswer& answer) {
+    const auto take = [&](const contact::QueryAnswer& answer, std::uint32_t place) {
         merge(answer, all);
         narrow();
-        if (pushes.empty()) return;
-        pushes[place].wrench.force += answer.load.force;
-        pushes[place].wrench.torque += answer.load.torque;
+        if (pushes == nullptr || (answer.load.force.isZero(0.0) && answer.load.torque.isZero(0.0))) return;
+        (*pushes)[place].wrench.force += answer.load.force;
+        (*pushes)[place].wrench.torque += answer.load.torque;
     };
-    for (const Obstacle& obstacle : model.obstacles) {
+    if (known) lookout.known.begin();
+    for (const std::uint32_t place :
+         lookout.near.within(X_WS, lookReach(std::max(request.collect_below, request.search_below)))) {
+        const Obstacle& obstacle = model.obstacles[place];
         const std::size_t first = manifold.size();
         const Pose& X_WO = obstacles.X_WO[place];
-        PairCertificates* const pair = known.empty() ? nullptr : &known[place];
+        PairCertificates* const pair = known ? lookout.known.of(model, place) : nullptr;
         take(query(*obstacle.field, X_WO, *model.shell, *model.edges, X_WS, request, workspace, manifold,
-                   pair != nullptr ? &pair->held : nullptr));
+                   pair != nullptr ? &pair->held : nullptr),
+             place);
         if (obstacle.shell != nullptr)
             take(queryBack(model, obstacle, X_WO, X_WS, request, workspace, manifold,
-                           pair != nullptr ? &pair->obstacle : nullptr));
-        manifold.assign(first, place++);
+                           pair != nullptr ? &pair->obstacle : nullptr),
+                 place);
+        manifold.assign(first, place);
     }
     return all;
 }

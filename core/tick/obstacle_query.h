@@ -14,11 +14,13 @@ namespace passung::tick {
 /// contacts are told as the held part's: gradients away from the obstacle, normals out of the held part. The model's
 /// mode and budget (per obstacle and way) replace those of `request`. Appends to `manifold`; returns the deepest or
 /// closest answer, with nodes added up and the least quality. Each obstacle's own load is added to its push, if
-/// `pushes` are given; what is `known` of each is made use of. rt-safe.
+/// `pushes` are given.
+///   Obstacles that cannot have anything that is asked for are not looked at (lookReach); of the others what earlier
+/// looks of `lookout` proved is made use of, if it is `known`. rt-safe.
 contact::QueryAnswer queryObstacles(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WS,
                                     contact::QueryRequest request, contact::QueryWorkspace& workspace,
-                                    contact::ContactManifold& manifold, std::span<ObstaclePush> pushes = {},
-                                    std::span<PairCertificates> known = {}) noexcept;
+                                    contact::ContactManifold& manifold, Lookout& lookout, bool known = false,
+                                    FewOfMany<ObstaclePush>* pushes = nullptr) noexcept;
 
 /// True if a point of the held part at `X_WS` lies in obstacle `i` at `X_WO` by more than `accepted` [m], or in two-way
 /// contact one of the obstacle's in the held part. rt-safe.

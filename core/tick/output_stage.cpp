@@ -1,6 +1,7 @@
 #include "core/tick/output_stage.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/tick/contact_energy.h"
 
@@ -41,7 +42,9 @@ Wrench wrenchOnDevice(const HandModel& model, const HandSample& hand, const Wren
 void splitSent(const HandModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
                double force_left, double torque_left) noexcept {
     Wrench rest = sent.last_sent;
-    for (std::size_t i = 0; i + 1 < sent.last_shares.size(); ++i) {
+    sent.last_shares.clear();
+    for (const std::uint32_t i : pushes.pushes.held()) {
+        if (i + 1 == sent.last_shares.size()) continue;  // no obstacle's: what is left below
         const Wrench push = wrenchOnDevice(model, hand, pushes.pushes[i].wrench);
         sent.last_shares[i] = {force_left * push.force, torque_left * push.torque};
         rest.force -= sent.last_shares[i].force;
@@ -64,11 +67,14 @@ void delayOutput(const HandModel& model, const HandSample& hand, DelayLine& line
     const std::size_t in = line.place, out = (line.place + 1) % length;
     line.delay_line[in] = hand.input_usable ? wrench.F_H_W : Wrench{};
     wrench.F_H_W = line.delay_line[out];
-    const std::size_t count = pushes.pushes.size();
-    for (std::size_t i = 0; i < count; ++i) {
-        line.push_line[in * count + i] = pushes.pushes[i].wrench;
-        pushes.pushes[i].wrench = line.push_line[out * count + i];
+    FewOfMany<Wrench>& kept = line.push_line[in];
+    kept.clear();
+    for (const std::uint32_t i : pushes.pushes.held()) {
+        kept[i] = pushes.pushes[i].wrench;
+        pushes.pushes[i].wrench = Wrench{};
     }
+    for (const std::uint32_t i : line.push_line[out].held())
+        pushes.pushes[i].wrench = std::as_const(line.push_line[out])[i];
     line.place = out;
 }
 
@@ -89,7 +95,7 @@ void limitOutput(const HandModel& model, const HandSample& hand, const Pushes& p
         felt.F_H_W = Wrench{};
         sent.last_sent = sent.sent_at_sample = Wrench{};
         sent.weighed = false;
-        for (Wrench& share : sent.last_shares) share = Wrench{};
+        sent.last_shares.clear();
         return;
     }
     const bool turns = limits.actuates_torque && limits.max_torque != 0.0;

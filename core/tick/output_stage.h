@@ -13,16 +13,16 @@ namespace passung::tick {
 struct DelayLine {
     std::size_t place = 0;  // of this tick; the next one is the oldest
     std::array<Wrench, scene::kMaxDelayTicks + 1> delay_line{};
-    std::vector<Wrench> push_line;  // the same of the obstacles' pushes, tick by tick
+    std::vector<FewOfMany<Wrench>> push_line;  // the same of the obstacles' pushes
 };
 
 /// Owner: output limits. Read by the energy account.
 struct SentWrench {
-    Wrench last_sent;                                          // F_D_B of the previous tick
-    Wrench sent_at_sample;                                     // F_D_B of the last tick with a new sample
-    bool latched = false;                                      // a computed wrench was not finite
-    bool weighed = false;                                      // the held part's weight is in last_sent
-    std::vector<Wrench> last_shares = std::vector<Wrench>(1);  // each pair's share of last_sent
+    Wrench last_sent;                  // F_D_B of the previous tick
+    Wrench sent_at_sample;             // F_D_B of the last tick with a new sample
+    bool latched = false;              // a computed wrench was not finite
+    bool weighed = false;              // the held part's weight is in last_sent
+    FewOfMany<Wrench> last_shares{1};  // each pair's share of last_sent
 };
 
 /// What a wrench about the handle's origin in the device's base axes is on the held part: about its origin, world axes.
@@ -36,7 +36,7 @@ void delayOutput(const HandModel& model, const HandSample& hand, DelayLine& line
 inline constexpr StageOf kOutputDelay{delayOutput,
                                       {.name = "output delay",
                                        .parameters = "device.delay_ticks",
-                                       .cost = "constant, and a little for each obstacle",
+                                       .cost = "constant, and a little for each obstacle that pushes",
                                        .before_start = true,
                                        .needs = [](const HandModel& model) { return model.limits.delay_ticks > 0; },
                                        .reason = [](const HandModel&) { return "device.delay_ticks is set"; },
@@ -49,7 +49,7 @@ inline constexpr StageOf kNoWrench{
     withholdWrench,
     {.name = "no wrench",
      .parameters = "feedback.kinesthetic",
-     .cost = "constant, and a little for each obstacle",
+     .cost = "constant, and a little for each obstacle that pushes",
      .before_start = true,
      .needs = [](const HandModel& model) { return !model.display_wrench; },
      .reason =
@@ -77,7 +77,7 @@ inline constexpr StageOf kOutputLimits{
     limitOutput,
     {.name = "output limits",
      .parameters = "device.max_force_N, max_torque_Nm, max_force_rate_N_per_s, device.registration",
-     .cost = "constant, and a little for each obstacle",
+     .cost = "constant, and a little for each obstacle that pushes",
      .before_start = true,
      .needs = [](const HandModel&) { return true; },
      .reason =

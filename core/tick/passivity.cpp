@@ -42,7 +42,7 @@ void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSa
     account.sent.torque += sent.last_sent.torque;
     ++account.ticks;
     if (sent.weighed) ++account.weighed;
-    for (std::size_t i = 0; i < accounts.pairs.size(); ++i) {
+    for (const std::uint32_t i : sent.last_shares.held()) {
         accounts.pairs[i].sent.force += sent.last_shares[i].force;
         accounts.pairs[i].sent.torque += sent.last_shares[i].torque;
     }
@@ -67,7 +67,8 @@ void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSa
         account.X_BD = X;
         account.has_sample = true;
         account.sent = Wrench{};
-        for (PairAccount& pair : accounts.pairs) pair.sent = Wrench{};
+        for (const std::uint32_t i : accounts.pairs.held()) accounts.pairs[i].sent = Wrench{};
+        accounts.pairs.letGo();
         account.ticks = 0;
     }
     record.energy = account.taken_in;

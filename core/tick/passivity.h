@@ -43,7 +43,7 @@ inline constexpr StageOf kEnergyAccount{
     observeEnergy,
     {.name = "energy account",
      .parameters = "",
-     .cost = "constant, and a little for each obstacle",
+     .cost = "constant, and a little for each obstacle that pushes",
      .senses = true,
      .before_start = true,
      .needs = [](const HandModel&) { return true; },

@@ -23,8 +23,10 @@ Vec3 dampingAlong(const Vec3& load, const Vec3& velocity, double damping) noexce
 }
 
 /// `pushes`, so far sums over their contacts.
-void scalePushes(std::span<ObstaclePush> pushes, double scale) noexcept {
-    for (ObstaclePush& push : pushes) {
+void scalePushes(FewOfMany<ObstaclePush>* pushes, double scale) noexcept {
+    if (pushes == nullptr) return;
+    for (const std::uint32_t i : pushes->held()) {
+        ObstaclePush& push = (*pushes)[i];
         push.wrench = {scale * push.wrench.force, scale * push.wrench.torque};
         push.pressure = push.wrench.force.norm();
     }
@@ -57,32 +59,32 @@ void findContactsAtHand(const HandModel& model, const HandSample& hand, const Ob
     clearPushes(pushes);
     const contact::QueryAnswer answer =
         queryObstacles(model, obstacles, hand.X_WH, penaltyRequest(model.contact.variant), memory.workspace,
-                       proxy.manifold, pushes.pushes, memory.near_hand);
+                       proxy.manifold, memory.around_hand, true, &pushes.pushes);
     account(answer, report);
     load.load = answer.load;
     record.contacts = static_cast<std::uint32_t>(answer.contacts);
     depth.hand_depth = record.proxy_depth = std::max(0.0, -answer.phi);
 }
 
-Wrench weightedWrench(const scene::ContactSpec& contact, const Wrench& load, std::span<ObstaclePush> pushes) noexcept {
+Wrench weightedWrench(const scene::ContactSpec& contact, const Wrench& load, FewOfMany<ObstaclePush>* pushes) noexcept {
     const double scale = (contact.two_way ? 0.5 : 1.0) * contact.area_stiffness;
     scalePushes(pushes, scale);
     return {scale * load.force, scale * load.torque};
 }
 
 Wrench penaltyWrench(const scene::ContactSpec& contact, const contact::ContactManifold& manifold, const Vec3& p_WO,
-                     std::span<ObstaclePush> pushes) noexcept {
+                     FewOfMany<ObstaclePush>* pushes) noexcept {
     return penaltyLoad(contact, manifold, p_WO, pushes).wrench;
 }
 
 PenaltyLoad penaltyLoad(const scene::ContactSpec& contact, const contact::ContactManifold& manifold, const Vec3& p_WO,
-                        std::span<ObstaclePush> pushes) noexcept {
+                        FewOfMany<ObstaclePush>* pushes) noexcept {
     const bool weighted = isWeighted(contact.variant);
     const contact::DepthSum all = contact::sumDepths(
         manifold, weighted, p_WO, [&](const contact::ContactPoint& c, const Vec3& f, const Vec3& moment) {
-            if (pushes.empty()) return;
-            pushes[c.obstacle].wrench.force += f;
-            pushes[c.obstacle].wrench.torque += moment;
+            if (pushes == nullptr) return;
+            (*pushes)[c.obstacle].wrench.force += f;
+            (*pushes)[c.obstacle].wrench.torque += moment;
         });
     double scale = (contact.two_way ? 0.5 : 1.0) * (weighted ? contact.area_stiffness : contact.stiffness);
     if (contact.variant == scene::PenaltyVariant::MaxNormalised) {
@@ -97,8 +99,8 @@ void renderPenalty(const HandModel& model, const HandSample& hand, const Proxy& 
                    HandVelocity& velocity, Pushes& pushes, HandWrench& wrench) noexcept {
     measureHandVelocity(velocity, hand);
     Wrench F = isWeighted(model.contact.variant)
-                   ? weightedWrench(model.contact, load.load, pushes.pushes)
-                   : penaltyWrench(model.contact, proxy.manifold, hand.X_WH.p, pushes.pushes);
+                   ? weightedWrench(model.contact, load.load, &pushes.pushes)
+                   : penaltyWrench(model.contact, proxy.manifold, hand.X_WH.p, &pushes.pushes);
     const Vec3 force_damping = dampingAlong(F.force, velocity.V_H_last.v, model.contact.damping);
     const Vec3 torque_damping = dampingAlong(F.torque, velocity.V_H_last.w, model.contact.rotational_damping);
     F.force += force_damping;

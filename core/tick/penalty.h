@@ -30,7 +30,7 @@ inline constexpr StageOf kContactsAtHand{
     findContactsAtHand,
     {.name = "contacts at the hand",
      .parameters = "contact.method, variant, mode, budget_nodes, two_way",
-     .cost = "a query of each obstacle, with two_way two",
+     .cost = "a query of each obstacle that is near, with two_way two",
      .needs = [](const HandModel& model) { return model.rendersAtHand(); },
      .reason =
          [](const HandModel& model) {
@@ -56,17 +56,17 @@ inline constexpr StageOf kContactsAtHand{
 /// p_i (our addition), which lets the force fade to zero there.
 /// `pushes`, if given, cleared, get each obstacle's part of it.
 Wrench penaltyWrench(const scene::ContactSpec& contact, const contact::ContactManifold& manifold, const Vec3& p_WO,
-                     std::span<ObstaclePush> pushes = {}) noexcept;
+                     FewOfMany<ObstaclePush>* pushes = nullptr) noexcept;
 /// The same, and what each point has of it per depth, area-weighted per depth and area [N/m], [N/m³].
 struct PenaltyLoad {
     Wrench wrench;
     double scale = 0.0;
 };
 PenaltyLoad penaltyLoad(const scene::ContactSpec& contact, const contact::ContactManifold& manifold, const Vec3& p_WO,
-                        std::span<ObstaclePush> pushes = {}) noexcept;
+                        FewOfMany<ObstaclePush>* pushes = nullptr) noexcept;
 /// The same for area_weighted, of QueryAnswer::load; `pushes`: each obstacle's load so far. rt-safe.
 Wrench weightedWrench(const scene::ContactSpec& contact, const Wrench& load,
-                      std::span<ObstaclePush> pushes = {}) noexcept;
+                      FewOfMany<ObstaclePush>* pushes = nullptr) noexcept;
 inline constexpr double kLeastCoherence = 0.2;
 
 /// Stage: the wrench of the manifold on the hand, with viscous damping along the force while in contact:

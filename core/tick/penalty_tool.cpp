@@ -131,7 +131,7 @@ void lookAt(const ProxyView& view, const Pose& X_WG, double reach, double search
     const contact::QueryRequest request{
         .collect_below = reach, .search_below = std::max(reach, search), .refine = true};
     const contact::QueryAnswer answer =
-        queryObstacles(model, obstacles, X_WG, request, memory.workspace, proxy.manifold);
+        queryObstacles(model, obstacles, X_WG, request, memory.workspace, proxy.manifold, memory.around_proxy);
     account(answer, report);
     proxy.X_WG = X_WG;
     proxy.manifold_reach = reach;
@@ -208,7 +208,7 @@ void settleTool(const HandModel& model, const HandSample& hand, const HeldTarget
     tool.X_WH_last = hand.X_WH;
     tool.has_last_hand = true;
     clearPushes(pushes);
-    penaltyWrench(balance.law(), proxy.manifold, proxy.X_WG.p, pushes.pushes);
+    penaltyWrench(balance.law(), proxy.manifold, proxy.X_WG.p, &pushes.pushes);
 }
 
 }  // namespace passung::tick

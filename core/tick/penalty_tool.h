@@ -63,7 +63,7 @@ inline constexpr StageOf kPenaltyTool{
     {.name = "penalty tool",
      .parameters = "contact.coupling, variant, penalty_stiffness_N_per_m, tool_mass_kg, tool_inertia_kg_m2, stiffness, "
                    "damping, mode, budget_nodes, two_way",
-     .cost = "a few queries of each obstacle; bound: kToolSteps",
+     .cost = "a few queries of each obstacle that is near; bound: kToolSteps",
      .needs = [](const HandModel& model) { return model.hasFieldProxyOf(scene::ContactMethod::Penalty); },
      .reason =
          [](const HandModel& model) {

@@ -59,8 +59,8 @@ Vec3 wayToContact(const HandModel& model, HandState& state) {
     if (model.hasClosedForm()) return wayToContact(model.X_WG_start, state);
     if (model.hasSurfaces()) return wayToSurface(model);
     state.scratch.clear();
-    const contact::QueryAnswer answer =
-        queryObstacles(model, state, model.X_WG_start, {.search_below = 1.0}, state.workspace, state.scratch);
+    const contact::QueryAnswer answer = queryObstacles(model, state, model.X_WG_start, {.search_below = 1.0},
+                                                       state.workspace, state.scratch, state.around_hand);
     return -(answer.phi + kPressed) * answer.normal_W;
 }
 

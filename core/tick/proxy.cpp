@@ -89,8 +89,8 @@ void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double s
     // besides, and what that is depends on what is known.
     const bool whole = model.contact.budget_nodes == 0;
     if (whole) request.every_below = model.margins.accept;
-    contact::QueryAnswer answer = queryObstacles(model, obstacles, X_WG, request, memory.workspace, memory.scratch, {},
-                                                 whole ? std::span(memory.near_proxy) : std::span<PairCertificates>());
+    contact::QueryAnswer answer =
+        queryObstacles(model, obstacles, X_WG, request, memory.workspace, memory.scratch, memory.around_proxy, whole);
     account(answer, report);
     std::swap(proxy.manifold, memory.scratch);
     proxy.cuts = 0;
@@ -104,7 +104,7 @@ void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double s
     if (!(proxy.clearance_bound > reach)) return;
     request.prove = true;
     memory.scratch.clear();
-    answer = queryObstacles(model, obstacles, X_WG, request, memory.workspace, memory.scratch);
+    answer = queryObstacles(model, obstacles, X_WG, request, memory.workspace, memory.scratch, memory.around_proxy);
     account(answer, report);
     proxy.clearance_bound = std::max(reach, answer.lower_bound);
 }
@@ -116,8 +116,8 @@ bool lookAround(const ProxyView& view, const Pose& X_WG, double reach, double se
         return true;
     }
     FieldLook& look = proxy.step.look;
-    if (!look.open) beginLook(look, X_WG, reach, search);
-    if (!goOnLooking(model, obstacles, look, memory.near_proxy, report)) return false;
+    if (!look.open) beginLook(look, X_WG, reach, search, memory.around_proxy.near);
+    if (!goOnLooking(model, obstacles, look, memory.around_proxy.known, report)) return false;
     std::swap(memory.scratch, proxy.manifold);
     std::swap(proxy.manifold, look.found);
     proxy.cuts = 0;
@@ -177,7 +177,7 @@ bool overlapsBetween(const ProxyView& view, const Pose& X_from, const Pose& X_to
     const contact::QueryRequest request{
         .collect_below = -1e300, .search_below = -accepted, .facing = view.model.contact.two_way, .edges = true};
     const contact::QueryAnswer answer = queryObstacles(view.model, view.obstacles, X, request, view.memory.workspace,
-                                                       view.memory.scratch, {}, view.memory.near_proxy);
+                                                       view.memory.scratch, view.memory.around_proxy, true);
     account(answer, view.report);
     return answer.found;
 }
@@ -297,7 +297,7 @@ void measureHandDepth(const HandModel& model, const HandSample& hand, const Obst
                       QueryMemory& memory, HandDepth& depth, Report& report) noexcept {
     memory.scratch.clear();
     const contact::QueryAnswer answer = queryObstacles(model, obstacles, hand.X_WH, {.collect_below = -1e300},
-                                                       memory.workspace, memory.scratch, {}, memory.near_hand);
+                                                       memory.workspace, memory.scratch, memory.around_hand, true);
     report.nodes_visited += static_cast<std::uint32_t>(answer.nodes_visited);
     report.work += workOf(answer);
     depth.hand_depth = std::max(0.0, -answer.phi);

@@ -167,7 +167,7 @@ inline constexpr StageOf kProxyFilter{
     filterProxy,
     {.name = "proxy filter",
      .parameters = "contact.proxy_filter_hz",
-     .cost = "in contact one query of each obstacle, at most two",
+     .cost = "in contact one query of each obstacle that is near, at most two",
      .needs =
          [](const HandModel& model) {
              return model.hasFieldProxy() && model.contact.proxy_filter > 0.0 &&
@@ -196,7 +196,7 @@ inline constexpr StageOf kHandDepth{
     measureHandDepth,
     {.name = "hand depth",
      .parameters = "contact.record_hand_depth",
-     .cost = "a query of each obstacle, with two_way two",
+     .cost = "a query of each obstacle that is near, with two_way two",
      .needs = [](const HandModel& model) { return model.hasFieldProxy() && model.record_hand_depth; },
      .reason = [](const HandModel&) { return "the overlap at the device's pose is measured and recorded"; }}};
 

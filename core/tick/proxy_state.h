@@ -4,12 +4,12 @@
 #include <limits>
 #include <vector>
 
-#include "core/contact/certificates.h"
 #include "core/contact/contact_query.h"
 #include "core/contact/edge_search.h"
 #include "core/motion/active_set.h"
 #include "core/motion/friction.h"
 #include "core/tick/energy_account.h"
+#include "core/tick/lookout.h"
 
 namespace passung::tick {
 
@@ -28,11 +28,11 @@ struct ObstaclePoses {
 struct HeldTarget {
     static constexpr bool kOnlyRead = true;
     Pose X_WT;
-    std::vector<ObstaclePush> from_hands;  // of each obstacle, as Pushes; empty where no other hand is
-    std::uint32_t contacts_of_hands = 0;   // that push so
-    std::uint32_t work = 0;                // that the proxy's way may take in this tick, of what all hands have
-    Pose X_WH_before;                      // the hand in the tick before, where there are several
-    double others_way = 0.0;               // that the other hands went since then, together [m]
+    FewOfMany<ObstaclePush> from_hands;   // of each obstacle, as Pushes; empty where no other hand is
+    std::uint32_t contacts_of_hands = 0;  // that push so
+    std::uint32_t work = 0;               // that the proxy's way may take in this tick, of what all hands have
+    Pose X_WH_before;                     // the hand in the tick before, where there are several
+    double others_way = 0.0;              // that the other hands went since then, together [m]
 };
 
 /// A look from a pose under a budget of nodes, and how far it has come (field_look.h).
@@ -47,7 +47,8 @@ struct FieldLook {
     // Where it stands
     double clearance = 0.0;
     bool proves = false, back = false, along_edges = false;
-    std::uint32_t obstacle = 0;
+    std::vector<std::uint32_t> near;  // obstacles that it looks at, the first `near_count`
+    std::size_t near_count = 0, at = 0;
     std::size_t first_of_obstacle = 0, first_of_way = 0;  // in what was found
     contact::QueryWorkspace workspace;
     contact::EdgePause edges;
@@ -100,18 +101,12 @@ struct ProxyMotion {
     double last_motion = 0.0;         // of the proxy, in the metric of metric_radius [m]
 };
 
-/// What earlier looks proved of each obstacle with the held part: of the held part's points, and in two-way contact of
-/// the obstacle's. True wherever the held part is, but sharp only near the poses of those looks.
-struct PairCertificates {
-    contact::ShellCertificates held, obstacle;
-};
-
 /// Memory of queries. Handed on, but what is in it is nobody's: each stage finds it in any state.
 struct QueryMemory {
     static constexpr bool kHandedOn = true;
     contact::QueryWorkspace workspace;
     contact::ContactManifold scratch;
-    std::vector<PairCertificates> near_proxy, near_hand;  // of each obstacle; looks at the proxy, at the hand
+    Lookout around_proxy, around_hand;
 };
 
 }  // namespace passung::tick

@@ -41,7 +41,7 @@ double TickQuery::distanceAt(const Pose& X_WS) noexcept {
     contact::QueryRequest request = penaltyRequest(model.contact.variant);
     request.search_below = std::numeric_limits<double>::infinity();
     state.scratch.clear();
-    return queryObstacles(model, state, X_WS, request, state.workspace, state.scratch).phi;
+    return queryObstacles(model, state, X_WS, request, state.workspace, state.scratch, state.around_hand).phi;
 }
 
 }  // namespace passung::tick

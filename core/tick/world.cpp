@@ -1,15 +1,19 @@
 #include "core/tick/world.h"
 
+#include <algorithm>
+
 namespace passung::tick {
 
 namespace {
 
-Body bodyOf(const scene::Scene& scene, std::size_t i, scene::Geometry geometry) {
-    const scene::PartSpec& spec = scene.spec.parts[i];
-    const scene::Part& part = *scene.parts[i];
-    Body body{.X_WP_start = spec.X_WP, .held = spec.held};
+/// What bodies of that part have in common; `world` keeps its solid, for which it has room.
+Body bodyOf(const scene::Part& part, scene::Geometry geometry, World& world) {
+    Body body;
+    body.box = geometry::boundsOf(part.mesh);
+    body.box.low.array() -= part.chord_error;
+    body.box.high.array() += part.chord_error;
     if (geometry == scene::Geometry::ClosedForm) {
-        body.solid = *closed_form::solidOf(*part.shape);
+        body.solid = &world.solids.emplace_back(*closed_form::solidOf(*part.shape));
         body.reach = closed_form::reachOf(*body.solid);
     } else if (geometry == scene::Geometry::Surface) {
         body.surface = part.clusters.get();
@@ -41,7 +45,19 @@ void addStillSurface(World& world) {
 World makeWorld(const scene::Scene& scene) {
     World world;
     world.geometry = scene::geometryOf(scene.spec).geometry;
-    for (std::size_t i = 0; i < scene.parts.size(); ++i) world.bodies.push_back(bodyOf(scene, i, world.geometry));
+    std::vector<const scene::Part*> built;
+    for (const auto& part : scene.parts) built.push_back(part.get());
+    std::sort(built.begin(), built.end());
+    built.erase(std::unique(built.begin(), built.end()), built.end());
+    world.solids.reserve(built.size());
+    std::vector<Body> bodies;
+    for (const scene::Part* part : built) bodies.push_back(bodyOf(*part, world.geometry, world));
+    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+        const auto at = std::lower_bound(built.begin(), built.end(), scene.parts[i].get());
+        Body& body = world.bodies.emplace_back(bodies[static_cast<std::size_t>(at - built.begin())]);
+        body.X_WP_start = scene.spec.parts[i].X_WP;
+        body.held = scene.spec.parts[i].held;
+    }
     if (world.geometry == scene::Geometry::Surface) addStillSurface(world);
     return world;
 }

@@ -2,12 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "core/base/types.h"
 #include "core/closed_form/solid.h"
 #include "core/geometry/cluster_tree.h"
+#include "core/geometry/mesh.h"
 #include "core/scene/contact_geometry.h"
 #include "core/scene/scene.h"
 
@@ -21,16 +21,18 @@ struct Body {
     // Geometry::Field only, as far as anybody asks for it
     const field::DistanceField* field = nullptr;
     const shell::SphereTree* shell = nullptr;
-    const shell::EdgeCurves* edges = nullptr;            // with the shell
-    const geometry::ClusterTree* surface = nullptr;      // Geometry::Surface only
-    std::optional<closed_form::SmoothSolid> solid = {};  // Geometry::ClosedForm only
+    const shell::EdgeCurves* edges = nullptr;         // with the shell
+    const geometry::ClusterTree* surface = nullptr;   // Geometry::Surface only
+    const closed_form::SmoothSolid* solid = nullptr;  // Geometry::ClosedForm only; parts of one shape share it
+    geometry::Bounds box = {};                        // that holds it, in its frame [m]
 };
 
 /// The parts of a scene and what they share, for all hands. Does not change while a trial runs. Borrows the scene's
 /// parts.
 struct World {
     scene::Geometry geometry = scene::Geometry::Field;
-    std::vector<Body> bodies;  // in the order of the scene
+    std::vector<Body> bodies;                      // in the order of the scene
+    std::vector<closed_form::SmoothSolid> solids;  // Geometry::ClosedForm only: one of each shape
     // Geometry::Surface only: all that nobody holds, in the world, as one or none; and of each its first triangle there
     std::vector<geometry::ClusterTree> still_surface;
     std::vector<std::uint32_t> first_triangles;

@@ -35,20 +35,21 @@ QueryClock query_clock;
 namespace passung::tick {
 contact::QueryAnswer real(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WS,
                           contact::QueryRequest request, contact::QueryWorkspace& workspace,
-                          contact::ContactManifold& manifold, std::span<ObstaclePush> pushes,
-                          std::span<PairCertificates> known) noexcept asm("__real_" PASSUNG_QUERY_SYMBOL);
+                          contact::ContactManifold& manifold, Lookout& lookout, bool known,
+                          FewOfMany<ObstaclePush>* pushes) noexcept asm("__real_" PASSUNG_QUERY_SYMBOL);
 contact::QueryAnswer timed(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WS,
                            contact::QueryRequest request, contact::QueryWorkspace& workspace,
-                           contact::ContactManifold& manifold, std::span<ObstaclePush> pushes,
-                           std::span<PairCertificates> known) noexcept asm("__wrap_" PASSUNG_QUERY_SYMBOL);
+                           contact::ContactManifold& manifold, Lookout& lookout, bool known,
+                           FewOfMany<ObstaclePush>* pushes) noexcept asm("__wrap_" PASSUNG_QUERY_SYMBOL);
 
 contact::QueryAnswer timed(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WS,
                            contact::QueryRequest request, contact::QueryWorkspace& workspace,
-                           contact::ContactManifold& manifold, std::span<ObstaclePush> pushes,
-                           std::span<PairCertificates> known) noexcept {
-    if (!query_clock.running) return real(model, obstacles, X_WS, request, workspace, manifold, pushes, known);
+                           contact::ContactManifold& manifold, Lookout& lookout, bool known,
+                           FewOfMany<ObstaclePush>* pushes) noexcept {
+    if (!query_clock.running) return real(model, obstacles, X_WS, request, workspace, manifold, lookout, known, pushes);
     const bench::Stopwatch watch;
-    const contact::QueryAnswer answer = real(model, obstacles, X_WS, request, workspace, manifold, pushes, known);
+    const contact::QueryAnswer answer =
+        real(model, obstacles, X_WS, request, workspace, manifold, lookout, known, pushes);
     query_clock.seconds += watch.seconds();
     ++query_clock.queries;
     return answer;
@@ -67,24 +68,6 @@ constexpr std::size_t kMostContacts = 200;
 constexpr const char* kParticipant = "P01";
 constexpr std::uint64_t kSeed = 20260302;
 constexpr std::int64_t kTrialsBefore = 26;  // practised
-
-/// The device's readings while the simulated participant does a trial.
-Result<std::vector<TickRecord>> perform(const plan::StudyPlan& plan, const plan::Condition& condition,
-                                        std::int64_t ticks) {
-    const simulated::DeviceParams* device = simulated::findPreset(condition.device);
-    if (device == nullptr) return Error{.message = "no such device preset", .value = condition.device};
-    run::LoopApparatus apparatus(*device, person::personOf(plan.name, kParticipant, plan.seed), run::Clock::Virtual);
-    const auto prepared = apparatus.prepare(condition, kSeed, kTrialsBefore);
-    if (!prepared) return prepared.errors();
-    std::vector<TickRecord> records(static_cast<std::size_t>(ticks));
-    apparatus.start();
-    for (std::size_t taken = 0; taken < records.size();) {
-        apparatus.advance(1000);
-        taken += apparatus.takeRecords(std::span(records).subspan(taken));
-    }
-    apparatus.stop();
-    return records;
-}
 
 /// What it takes to read the clock.
 double clockCost() {
@@ -228,6 +211,23 @@ const plan::Condition* counterpart(const plan::StudyPlan& plan, const plan::Cond
 
 }  // namespace
 
+Result<std::vector<TickRecord>> recordTrial(const plan::StudyPlan& plan, const plan::Condition& condition,
+                                            std::int64_t ticks) {
+    const simulated::DeviceParams* device = simulated::findPreset(condition.device);
+    if (device == nullptr) return Error{.message = "no such device preset", .value = condition.device};
+    run::LoopApparatus apparatus(*device, person::personOf(plan.name, kParticipant, plan.seed), run::Clock::Virtual);
+    const auto prepared = apparatus.prepare(condition, kSeed, kTrialsBefore);
+    if (!prepared) return prepared.errors();
+    std::vector<TickRecord> records(static_cast<std::size_t>(ticks));
+    apparatus.start();
+    for (std::size_t taken = 0; taken < records.size();) {
+        apparatus.advance(1000);
+        taken += apparatus.takeRecords(std::span(records).subspan(taken));
+    }
+    apparatus.stop();
+    return records;
+}
+
 Result<std::vector<Row>> forceRows(const std::string& protocol, const Extent& extent) {
     std::vector<Row> rows;
     bool wanted = false;
@@ -246,7 +246,7 @@ Result<std::vector<Row>> forceRows(const std::string& protocol, const Extent& ex
         std::string settings = by_penalty.name;
         for (const std::string part : {"penalty/", "/field"})
             if (const auto at = settings.find(part); at != std::string::npos) settings.erase(at, part.size());
-        const auto trial = perform(*plan, *shipped, ticks);
+        const auto trial = recordTrial(*plan, *shipped, ticks);
         if (!trial) return trial.errors();
         const auto as_shipped =
             overlapRow(settings + ", as the study has it", shipped->scene, by_penalty.scene, *trial);
@@ -256,7 +256,7 @@ Result<std::vector<Row>> forceRows(const std::string& protocol, const Extent& ex
         plan::Condition condition = by_penalty;
         condition.scene.contact.method = scene::ContactMethod::GodObject;
         condition.scene.contact.geometry = scene::Geometry::Field;
-        const auto records = perform(*plan, condition, ticks);
+        const auto records = recordTrial(*plan, condition, ticks);
         if (!records) return records.errors();
         const auto scene = scene::buildScene(condition.scene, parts);
         if (!scene) return scene.errors();

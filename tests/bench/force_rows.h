@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "core/base/tick_record.h"
+#include "study/plan/study_plan.h"
 #include "tests/bench/contact_rows.h"
 
 namespace passung::bench {
@@ -24,5 +26,10 @@ inline constexpr const char* kOverlapMethod = "god_object, deepest overlap over 
 /// fields and points that the study asks for, and with finer ones.
 /// Errors: the study cannot be read, a scene cannot be built.
 Result<std::vector<Row>> forceRows(const std::string& protocol, const Extent& extent);
+
+/// The device's readings while the study's simulated participant does a trial of so many ticks.
+/// Errors: the device is not known, the scene cannot be built.
+Result<std::vector<TickRecord>> recordTrial(const plan::StudyPlan& plan, const plan::Condition& condition,
+                                            std::int64_t ticks);
 
 }  // namespace passung::bench

@@ -15,6 +15,7 @@
 #include "tests/bench/convergence_rows.h"
 #include "tests/bench/force_rows.h"
 #include "tests/bench/hard_rows.h"
+#include "tests/bench/many_part_rows.h"
 #include "tests/bench/marks.h"
 #include "tests/bench/million_rows.h"
 #include "tests/bench/part_rows.h"
@@ -50,7 +51,7 @@ bool trustworthy(const std::vector<Row>& rows) {
             fine = false;
         };
         const bool times_only = row.group == kMillionGroup || row.group == kPiecesGroup || row.group == kHardGroup ||
-                                row.group == kForceGroup;
+                                row.group == kForceGroup || row.group == kPartsGroup;
         if (!std::isfinite(row.distance_error_um.max) && !times_only) complain("an error is not a number");
         if (row.bound_broken > 0.0) complain(fmt::format("{} answers are outside their own bound", row.bound_broken));
     }
@@ -72,7 +73,7 @@ Error nothingMatches(const std::string& filter) {
     std::string message = "no row's group and method contain this text; groups:";
     const char* between = " ";
     for (const char* group : {kPressedGroup, kApartGroup, kMillionGroup, kSamplingGroup, kBuildGroup, kBoreGroup,
-                              kDefectGroup, kConvergenceGroup, kHardGroup, kPiecesGroup, kForceGroup}) {
+                              kDefectGroup, kConvergenceGroup, kHardGroup, kPiecesGroup, kForceGroup, kPartsGroup}) {
         message += between + fmt::format("'{}'", group);
         between = ", ";
     }
@@ -105,11 +106,15 @@ int run(const Options& options) {
     if (!scene) return fail(scene.errors());
     std::vector<Row> rows;
     using Group = std::function<Result<std::vector<Row>>()>;
-    const std::vector<Group> groups{
-        [&] { return contactRows(*scene, extent); },  [&] { return millionRows(*scene, extent); },
-        [&] { return samplingRows(*bunny, extent); }, [&] { return partRows(*bunny, extent); },
-        [&] { return convergenceRows(extent); },      [&] { return hardRows(extent); },
-        [&] { return piecesRows(*scene, extent); },   [&] { return forceRows(options.protocol, extent); }};
+    const std::vector<Group> groups{[&] { return contactRows(*scene, extent); },
+                                    [&] { return millionRows(*scene, extent); },
+                                    [&] { return samplingRows(*bunny, extent); },
+                                    [&] { return partRows(*bunny, extent); },
+                                    [&] { return convergenceRows(extent); },
+                                    [&] { return hardRows(extent); },
+                                    [&] { return piecesRows(*scene, extent); },
+                                    [&] { return forceRows(options.protocol, extent); },
+                                    [&] { return manyPartRows(options.protocol, extent); }};
     for (const Group& group : groups) {
         const auto measured = group();
         if (!measured) return fail(measured.errors());

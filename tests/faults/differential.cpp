@@ -161,7 +161,7 @@ void runStages(Random& random) {
         state.pairs.resize(pairs);
         state.pushes.resize(pairs);
         state.last_shares.resize(pairs);
-        state.push_line.resize(pairs * (scene::kMaxDelayTicks + 1));
+        state.push_line.assign(scene::kMaxDelayTicks + 1, tick::FewOfMany<Wrench>(pairs));
         const Pose X{anyRotation(random, 1.0), anyVector(random, 0.3)};
         model.X_WG_start = tick::registeredPose(model.registration, X);
         model.X_WG_start.p += anyVector(random, 0.01);
@@ -187,7 +187,7 @@ void runStages(Random& random) {
             if (random.below(2000) == 0) asked.force *= 1e200;
             frame.F_H_W = asked;
             if (random.below(3000) == 0) frame.F_H_W.torque.y() = std::numeric_limits<double>::infinity();
-            for (tick::ObstaclePush& push : state.pushes) push.wrench = anyWrench(random, 1.0, 0.01);
+            for (std::size_t k = 0; k < pairs; ++k) state.pushes[k].wrench = anyWrench(random, 1.0, 0.01);
             if (model.limits.delay_ticks > 0) tick::runStage<tick::kOutputDelay>(model, state, frame);
             delay_bits.add(frame.F_H_W);
             for (const tick::ObstaclePush& push : state.pushes) delay_bits.add(push.wrench);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/contact/certificates.h"
 #include "core/contact/contact_query.h"
 #include "core/tick/closed_form_proxy.h"
 #include "core/tick/surface_follow.h"
@@ -17,9 +16,9 @@ namespace passung::test {
 /// What saves time and holds nothing that anybody may look at, and a proxy that hides what it holds.
 template <class T>
 inline constexpr bool kIsMemory =
-    std::is_same_v<T, contact::QueryWorkspace> || std::is_same_v<T, contact::Certificates> ||
-    std::is_same_v<T, tick::ClosedFormMemory> || std::is_same_v<T, tick::FieldLook> ||
-    std::is_same_v<T, std::optional<surface::SurfaceProxy>>;
+    std::is_same_v<T, contact::QueryWorkspace> || std::is_same_v<T, geometry::NearList> ||
+    std::is_same_v<T, tick::KnownPairs> || std::is_same_v<T, tick::ClosedFormMemory> ||
+    std::is_same_v<T, tick::FieldLook> || std::is_same_v<T, std::optional<surface::SurfaceProxy>>;
 
 /// Converts to whatever a field is.
 struct Anything {
@@ -91,6 +90,8 @@ void eachNumber(T& value, F&& f) {
         for (int i = 0; i < 4; ++i) f(value.coeffs()[i]);
     } else if constexpr (std::is_base_of_v<Eigen::MatrixBase<Plain>, Plain>) {
         for (int i = 0; i < value.size(); ++i) f(value.data()[i]);
+    } else if constexpr (requires { value.held(); }) {
+        for (std::size_t i = 0; i < value.size(); ++i) eachNumber(value[i], f);
     } else if constexpr (requires {
                              value[0];
                              value.begin();

@@ -92,5 +92,41 @@ TEST(ClusterTree, EveryClusterOfATreeAndOfSeveralIsAroundItsFaces) {
     EXPECT_NEAR(whole.reach(), farthest, 1e-9);
 }
 
+/// The parts of which faces lie below, told by their triangles.
+void partsBelow(const ClusterTree& tree, std::uint32_t at, std::uint32_t triangles, std::vector<std::uint32_t>& parts) {
+    const Cluster& cluster = tree[at];
+    if (cluster.isFace()) return parts.push_back(cluster.triangle / triangles);
+    partsBelow(tree, cluster.child, triangles, parts);
+    partsBelow(tree, cluster.child + 1, triangles, parts);
+}
+
+TEST(ClusterTree, OfManyPartsThoseThatAreNearEachOtherAreClusters) {
+    // Truth: closed form. Boxes along a line, in any order in the scene: each half of the line is a cluster. Triangles
+    // are those of the part that they were given with.
+    Random random(8);
+    const auto mesh = shape::tessellate(shape::Box{0.01, 0.01, 0.01}, 1e-5);
+    const ClusterTree box(mesh);
+    const auto triangles = static_cast<std::uint32_t>(mesh.triangles.size());
+    std::vector<PlacedTree> placed;
+    for (int i = 0; i < 64; ++i) placed.push_back({&box, {Quat::Identity(), Vec3(0.1 * i, 0.001 * (i % 7), 0)}});
+    shuffle(placed, random);
+    const ClusterTree whole{std::span<const PlacedTree>(placed)};
+    for (std::uint32_t c = 0; c < whole.size(); ++c) {
+        if (!whole[c].isFace()) continue;
+        const Vec3& middle = placed[whole[c].triangle / triangles].X.p;
+        for (const Vec3& p : cornersOf(whole, whole[c])) EXPECT_LE((p - middle).cwiseAbs().maxCoeff(), 0.005 + 1e-12);
+    }
+    for (const std::uint32_t child : {whole[0].child, whole[0].child + 1}) {
+        std::vector<std::uint32_t> parts;
+        partsBelow(whole, child, triangles, parts);
+        double least = 10.0, most = -10.0;
+        for (const std::uint32_t part : parts) {
+            least = std::min(least, placed[part].X.p.x());
+            most = std::max(most, placed[part].X.p.x());
+        }
+        EXPECT_NEAR(most - least, 3.1, 1e-9) << "half of the line, less one";
+    }
+}
+
 }  // namespace
 }  // namespace passung::geometry

@@ -30,7 +30,7 @@ scene::SceneSpec ballInCorner(ContactMethod method) {
 constexpr ContactMethod kMethods[] = {ContactMethod::Penalty, ContactMethod::GodObjectHeuristic,
                                       ContactMethod::GodObject};
 
-double sumOf(const std::vector<tick::PairAccount>& pairs) {
+double sumOf(const tick::FewOfMany<tick::PairAccount>& pairs) {
     double sum = 0.0;
     for (const tick::PairAccount& pair : pairs) sum += pair.taken_in;
     return sum;

@@ -537,7 +537,7 @@ TEST(OutputStage, DelaysForceTorqueAndPushesBySoManyTicks) {
         model.limits.delay_ticks = n;
         tick::HandState state;
         state.pushes.resize(2);
-        state.push_line.resize(2 * (scene::kMaxDelayTicks + 1));
+        state.push_line.assign(scene::kMaxDelayTicks + 1, tick::FewOfMany<Wrench>(2));
         Random random(2);
         std::vector<Wrench> asked, pushed;
         for (int i = 0; i < 3 * n + 20; ++i) {
@@ -546,9 +546,9 @@ TEST(OutputStage, DelaysForceTorqueAndPushesBySoManyTicks) {
             frame.input_usable = i % 5 != 3;
             frame.F_H_W = {any(), any()};
             asked.push_back(frame.input_usable ? frame.F_H_W : Wrench{});
-            for (tick::ObstaclePush& push : state.pushes) {
-                push.wrench = {any(), any()};
-                pushed.push_back(push.wrench);
+            for (std::size_t k = 0; k < 2; ++k) {
+                state.pushes[k].wrench = {any(), any()};
+                pushed.push_back(state.pushes[k].wrench);
             }
             tick::runStage<tick::kOutputDelay>(model, state, frame);
             const auto then = static_cast<std::size_t>(std::max(0, i - n));

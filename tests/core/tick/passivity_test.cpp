@@ -166,7 +166,7 @@ TEST(EnergyAccount, BooksForcesAndTorquesOnTheMotionThatIsCertain) {
         std::array<double, 3> energy{};
         for (int i = 0; i < 300; ++i) {
             state.last_sent = anyWrench();
-            for (Wrench& share : state.last_shares) share = anyWrench();
+            for (std::size_t k = 0; k < 2; ++k) state.last_shares[k] = anyWrench();
             const Wrench sent[] = {state.last_sent, state.last_shares[0], state.last_shares[1]};
             for (std::size_t k = 0; k < 3; ++k) {
                 sum[k].force += sent[k].force;
