@@ -25,6 +25,8 @@ std::vector<RenderedScene> renderedScenes(const plan::Condition& condition, std:
     if (comparisonInterval(attempt_seed) == 1) std::swap(scenes[0], scenes[1]);
     scenes.push_back({scenes[1].spec, kToTheEnd});
     scenes[2].spec.start_gate.hold_ticks = std::numeric_limits<int>::max();
+    for (scene::HandSpec& hand : scenes[2].spec.other_hands)
+        hand.start_gate.hold_ticks = std::numeric_limits<int>::max();
     return scenes;
 }
 
