@@ -24,6 +24,7 @@
 #include "analysis/export/staircase_tables.h"
 #include "analysis/export/study_data.h"
 #include "analysis/export/trial_tables.h"
+#include "study/store/samples/sample_codec.h"
 
 namespace passung::exporter {
 namespace {
@@ -148,11 +149,10 @@ void writeSamples(const store::StoreReader& reader, const StudyData& study, cons
         }
         packings.pop_front();
     };
-    /// False: this hand has no ticks.
     const auto packHand = [&](const store::AttemptRow& attempt, std::size_t hand) {
         auto records = reader.records(attempt.attempt_id, hand);
         if (!records) writer.fail(records.errors());
-        if (!records || records->empty()) return false;
+        if (!records || records->empty()) return;
         if (packings.size() == at_once) writeOldest();
         // What is commanded beside the force goes to the first hand.
         packings.push_back(
@@ -161,11 +161,10 @@ void writeSamples(const store::StoreReader& reader, const StudyData& study, cons
                                              signals = hand == 0 ? sampleSignals(study, attempt) : SampleSignals{}] {
                  return gzip(samplesCsv(ticks, signals));
              })});
-        return true;
     };
     for (std::size_t i = 0; i < study.attempts.size() && !writer.failed(); ++i) {
-        for (std::size_t hand = 0; packHand(study.attempts[i], hand); ++hand) {
-        }
+        for (std::size_t hand = 0; hand < store::kMostTickStreams && !writer.failed(); ++hand)
+            packHand(study.attempts[i], hand);
         if (writer.failed()) break;
         if (options.cancelled && options.cancelled()) writer.fail({Error{.message = "the export was cancelled"}});
         if (options.progress) {

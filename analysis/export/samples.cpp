@@ -1,5 +1,6 @@
 #include "analysis/export/samples.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -155,10 +156,23 @@ std::vector<Column> sampleColumns() {
     return columns;
 }
 
+namespace {
+
+/// Of another hand than the first: as the scene calls it; hand2 and so on if nothing tells.
+std::string handName(const store::AttemptRow& attempt, std::size_t hand) {
+    std::vector<std::string> names;
+    for (const session::ContactEnergy& pair : attempt.contact_energy)
+        if (!pair.hand.empty() && std::find(names.begin(), names.end(), pair.hand) == names.end())
+            names.push_back(pair.hand);
+    return hand <= names.size() ? names[hand - 1] : "hand" + std::to_string(hand + 1);
+}
+
+}  // namespace
+
 std::string samplesFile(const store::AttemptRow& attempt, std::size_t hand) {
     return "samples/" + attempt.participant_id + "_" + std::to_string(attempt.session_ordinal) + "_t" +
            padded(attempt.trial_index) + "_a" + std::to_string(attempt.attempt_no) +
-           (hand == 0 ? "" : "_hand" + std::to_string(hand + 1)) + ".csv.gz";
+           (hand == 0 ? "" : "_" + handName(attempt, hand)) + ".csv.gz";
 }
 
 SampleSignals sampleSignals(const StudyData& study, const store::AttemptRow& attempt) {

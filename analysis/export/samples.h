@@ -20,7 +20,7 @@ namespace passung::exporter {
 std::vector<Column> sampleColumns();
 
 /// `samples/<participant>_<session>_t<trial>_a<attempt>.csv.gz`; of another hand than the first, `hand` from 0, with
-/// `_hand2` and so on before the dot.
+/// `_` and its name before the dot.
 std::string samplesFile(const store::AttemptRow& attempt, std::size_t hand);
 
 /// What was commanded beside the force while an attempt's ticks were recorded.

@@ -322,6 +322,8 @@ void markTickFronts(std::vector<PathCost>& rows) {
 Result<TickAccuracy> measureTicks(const scene::SceneSpec& scene, std::span<const Pose> path,
                                   const std::vector<TickSetting>& settings, const TickEffort& effort,
                                   const StepReport& report, scene::BuildStore* store) {
+    if (scene.handCount() > 1)
+        return Error{.message = "has more than one hand: what accuracy costs is measured with one", .key = "hand"};
     TickAccuracy result;
     scene::SceneSpec spec = scene;
     spec.registration = {};

@@ -12,6 +12,10 @@ ForceReference::ForceReference(const scene::SceneSpec& scene) {
     const scene::ContactSpec& contact = scene.contact;
     stiffness_ = contact.stiffness;
     rho_ = std::sqrt(contact.rotational_stiffness / contact.stiffness);
+    if (scene.handCount() > 1) {
+        missing_ = "the scene has more than one hand";
+        return;
+    }
     const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const auto& part) { return part.held; });
     const auto* shape = held == scene.parts.end() ? nullptr : std::get_if<shape::Shape>(&held->geometry);
     std::vector<PlacedShape> obstacles;

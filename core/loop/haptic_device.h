@@ -14,7 +14,7 @@ namespace passung::loop {
 struct DisplayedImage {
     std::int64_t tick = 0;
     Pose X_WShown;         // the part in this device's hand as drawn (proxy or device pose: the protocol's choice)
-    bool running = false;  // the trial has started (the "go" sign)
+    bool running = false;  // the trial has started, all hands are engaged (the "go" sign)
     // Every hand's part as drawn, in the order of the scene; of hands that it has not: identity.
     std::array<Pose, scene::kMostHands> X_WHeld = {};
 };

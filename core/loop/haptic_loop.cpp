@@ -78,6 +78,8 @@ void HapticCycle::run(std::uint32_t missed) noexcept {
     for (std::size_t i = 0; i < hands_.size(); ++i) hands_[i].device->command(outputs_[i].F_D_B);
 
     ScreenTick shown{.record = {}, .began_ns = times.begin};
+    shown.engaged = std::all_of(outputs_.begin(), outputs_.end(),
+                                [](const tick::TickOutput& output) { return (output.frame.status & kEngaged) != 0; });
     for (std::size_t i = hands_.size(); i-- > 0;) {  // whoever has the first hand's record finds the others'
         TickRecord record = tick::makeRecord(tick, readings_[i], outputs_[i]);
         record.duration_ns = times.wall;
@@ -90,16 +92,15 @@ void HapticCycle::run(std::uint32_t missed) noexcept {
     }
     for (ScreenRing* screen : screens_) screen->tryPush(shown);
     if (listener_ != nullptr) listener_->take(shown.record);
-    if (hasPicture(tick)) show(tick);
+    if (hasPicture(tick)) show(tick, shown.engaged);
 }
 
-void HapticCycle::show(std::int64_t tick) noexcept {
-    DisplayedImage image{.tick = tick, .X_WShown = {}, .running = false};
+void HapticCycle::show(std::int64_t tick, bool running) noexcept {
+    DisplayedImage image{.tick = tick, .X_WShown = {}, .running = running};
     for (std::size_t i = 0; i < hands_.size(); ++i)
         image.X_WHeld[i] = show_proxy_ ? outputs_[i].X_WG : outputs_[i].frame.X_WH;
     for (std::size_t i = 0; i < hands_.size(); ++i) {
         image.X_WShown = image.X_WHeld[i];
-        image.running = (outputs_[i].frame.status & kEngaged) != 0;
         hands_[i].device->show(image);
     }
 }

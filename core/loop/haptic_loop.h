@@ -67,7 +67,7 @@ private:
         std::int64_t begin = 0, wall = 0, processor = 0;  // when it began, how long it took [ns]
     };
     void compute(Times& times) noexcept;
-    void show(std::int64_t tick) noexcept;
+    void show(std::int64_t tick, bool running) noexcept;
 
     tick::SceneSequence scenes_;
     std::vector<HandPort> hands_;

@@ -65,6 +65,7 @@ struct ScreenTick {
     TickRecord record;                                        // of the first hand
     std::int64_t began_ns = 0;                                // when the devices had been read, on the steady clock
     std::array<HeldPart, scene::kMostHands - 1> others = {};  // the other hands' parts, in the order of the scene
+    bool engaged = false;                                     // all hands are
 };
 using ScreenRing = Ring<ScreenTick>;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/assert.h"
 #include "core/tick/tick_model.h"
 #include "core/tick/tick_state.h"
 
@@ -86,6 +87,7 @@ std::vector<PairAccount> SceneSequence::pairs() const {
 }
 
 void SceneSequence::step(std::span<const DeviceReading> readings, std::span<TickOutput> outputs) noexcept {
+    PASSUNG_ASSERT(readings.size() == turns_[current_].model->hands.size() && outputs.size() == readings.size());
     if (engaged_) rendered_ += readings.front().periods;
     if (engaged_ && rendered_ >= turns_[current_].periods && current_ + 1 < turns_.size()) {
         const TickState& before = states_[current_];

@@ -142,17 +142,18 @@ bool movesTheSame(const scene::ContactSpec& a, const scene::ContactSpec& b) {
     return fields(a) == fields(b) && (a.method != scene::ContactMethod::Penalty || tool(a) == tool(b));
 }
 
-/// Does a proxy hang from the same hand as far?
+/// Does each proxy hang from the same hand as far?
 bool hangsTheSame(const scene::SceneSpec& a, const scene::SceneSpec& b) {
-    const auto hang = [](const scene::SceneSpec& scene) -> std::array<double, 5> {
-        const auto held =
-            std::find_if(scene.parts.begin(), scene.parts.end(), [](const auto& part) { return part.held; });
-        const double density = held != scene.parts.end() ? held->density : 0.0;
+    const auto hang = [](const scene::SceneSpec& scene, std::size_t hand) -> std::array<double, 5> {
+        const std::size_t held = scene.heldBy(hand);
+        const double density = held < scene.parts.size() ? scene.parts[held].density : 0.0;
         const Vec3 pull = density * scene.effects.weight.gravity;
         if (pull.isZero(0.0)) return {};
         return {pull.x(), pull.y(), pull.z(), scene.contact.stiffness, scene.contact.rotational_stiffness};
     };
-    return hang(a) == hang(b);
+    bool same = a.handCount() == b.handCount();
+    for (std::size_t hand = 0; same && hand < a.handCount(); ++hand) same = hang(a, hand) == hang(b, hand);
+    return same;
 }
 
 bool looksTheSame(const scene::SceneSpec& a, const scene::SceneSpec& b, plan::ShownPose shown) {

@@ -286,7 +286,9 @@ double readAccuracyBudget(const TableReader& read, const scene::SceneSpec& scene
         if (read.has(key)) read.fail(key, "is picked by accuracy = \"auto\"");
     if (read.has("two_way") && !read.boolean("two_way"))
         read.fail("two_way", "is picked by accuracy = \"auto\"; true asks for both ways whatever it picks");
-    if (std::all_of(scene.parts.begin(), scene.parts.end(), [](const auto& part) { return part.held; }))
+    if (scene.handCount() > 1)
+        read.fail("accuracy", "needs one hand: it picks settings for the pairs of one held part");
+    else if (std::all_of(scene.parts.begin(), scene.parts.end(), [](const auto& part) { return part.held; }))
         read.fail("accuracy", "needs a part that the held one can touch");
     if (!read.has("accuracy_budget_us")) read.fail("accuracy_budget_us", "required by accuracy = \"auto\"");
     return read.numberOr("accuracy_budget_us", 0.0);
@@ -348,6 +350,7 @@ void readOtherHands(const TableReader& read, std::span<const std::string> names,
         const DeviceDescription* device = findDevice(device_table, devices);
         scene::HandSpec hand{readLimits(device_table, device), readRegistration(open("registration"), units),
                              readStartGate(open("start_gate")), names[i]};
+        checkStability(device_table, contact_table, device, content.scene.contact, hand);
         checkOtherStiffness(hand_table, contact_table, device, content.scene.contact, hand);
         content.other_devices.push_back(device_table.text("preset"));
         content.scene.other_hands.push_back(std::move(hand));

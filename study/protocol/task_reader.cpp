@@ -98,11 +98,16 @@ void flatten(const Node& table, const std::string& path, std::vector<Override>& 
 }
 
 /// Why an interval must not change this key of the scene; empty if it may.
-std::string_view sharedByIntervals(const std::string& path, const std::string& held) {
-    for (const std::string& shared : {std::string("device"), std::string("registration"), std::string("start_gate")})
+std::string_view sharedByIntervals(const std::string& path, const scene::SceneSpec& scene) {
+    for (const char* shared : {"device", "registration", "start_gate", "hand"})
         if (overlap(path, shared)) return "is one for both intervals";
-    for (const std::string& shared : {"part." + held + ".shape", "part." + held + ".mesh", "part." + held + ".pose"})
-        if (overlap(path, shared)) return "both intervals are felt with one part from one start";
+    for (const scene::PartSpec& part : scene.parts) {
+        const std::string own = "part." + part.name;
+        for (const char* shared : {".held", ".hand"})
+            if (overlap(path, own + shared)) return "is one for both intervals";
+        for (const char* shared : {".shape", ".mesh", ".pose"})
+            if (part.held && overlap(path, own + shared)) return "both intervals are felt with one part from one start";
+    }
     if (path.starts_with("task.") || path.starts_with("feedback.") || path.starts_with("secondary."))
         return "must be a key of the scene";
     return "";
@@ -163,7 +168,7 @@ scene::SceneSpec readComparison(const StudyTables& tables, const plan::Condition
     flatten(*tables.task.find("comparison"), "", overrides);
     StudyTables changed = tables;
     for (const Override& change : overrides) {
-        const auto why = sharedByIntervals(change.path, plan::heldPart(condition.scene)->name);
+        const auto why = sharedByIntervals(change.path, condition.scene);
         if (!why.empty()) {
             errors.push_back(errorAt(change.path_place, "task.comparison", change.path, std::string(why)));
             continue;

@@ -51,12 +51,14 @@ private:
         if (density == nullptr)
             return fail(*nearest(table_, "effects", "weight"), "effects.weight",
                         fmt::format("needs density_kg_per_m3 of the held part, {}", part.name));
-        if (const auto weight = body ? scene::weigh(scene_, *body) : std::nullopt) checkShown(*weight, *density, key);
+        if (const auto weight = body ? scene::weigh(scene_, *body) : std::nullopt)
+            checkShown(part, *weight, *density, key);
     }
 
-    void checkShown(const scene::HeldWeight& weight, const Node& density, const std::string& key) {
+    void checkShown(const scene::PartSpec& part, const scene::HeldWeight& weight, const Node& density,
+                    const std::string& key) {
         const scene::ContactSpec& contact = scene_.contact;
-        const scene::OutputLimits& limits = scene_.limits;
+        const scene::OutputLimits limits = scene_.hand(part.hand).limits;
         if (weight.force > limits.max_force)
             fail(density, key,
                  fmt::format("the part weighs {:.3g} N: more than the {:.3g} N that the device may show", weight.force,

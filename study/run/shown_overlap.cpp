@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "study/measures/overlap.h"
@@ -20,12 +21,12 @@ class OtherHands {
 public:
     explicit OtherHands(std::span<const std::vector<TickRecord>> hands) : hands_(hands), at_(hands.size()) {}
 
-    /// Their records of `tick`, or the last ones before it. @pre `tick` rises
+    /// Their records of `tick`, or the last ones before it; nullptr: there is none. @pre `tick` rises
     std::vector<const TickRecord*> next(std::int64_t tick) {
         std::vector<const TickRecord*> records;
         for (std::size_t i = 0; i < hands_.size(); ++i) {
             while (at_[i] + 1 < hands_[i].size() && hands_[i][at_[i] + 1].tick <= tick) ++at_[i];
-            if (!hands_[i].empty()) records.push_back(&hands_[i][at_[i]]);
+            records.push_back(hands_[i].empty() || hands_[i][at_[i]].tick > tick ? nullptr : &hands_[i][at_[i]]);
         }
         return records;
     }
@@ -37,7 +38,7 @@ private:
 
 bool areEngaged(const TickRecord& record, std::span<const TickRecord* const> others) {
     return (record.status & kEngaged) != 0 && std::all_of(others.begin(), others.end(), [](const TickRecord* other) {
-               return (other->status & kEngaged) != 0;
+               return other != nullptr && (other->status & kEngaged) != 0;
            });
 }
 
@@ -82,7 +83,7 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
     struct Shown {
         Pose X_WG;
         std::size_t scene;
-        std::vector<Pose> X_WOthers;
+        std::vector<std::optional<Pose>> X_WOthers;  // none: where it starts
     };
     std::map<std::int64_t, Shown> shown;
     for (const measures::TickOverlap& tick : ticks) shown[tick.tick] = {};
@@ -95,7 +96,8 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
         while (judged != shown.end() && judged->first < record.tick) ++judged;
         if (judged == shown.end() || judged->first != record.tick) continue;
         judged->second = {shownPose(record), scene, {}};
-        for (const TickRecord* other : beside) judged->second.X_WOthers.push_back(shownPose(*other));
+        for (const TickRecord* other : beside)
+            judged->second.X_WOthers.push_back(other != nullptr ? std::optional(shownPose(*other)) : std::nullopt);
     }
     // Those that are likely the deepest first, should the work not suffice for all.
     std::vector<measures::TickOverlap*> order;
@@ -106,8 +108,11 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
     std::size_t left = kMostPieces;
     for (measures::TickOverlap* tick : order) {
         const Shown& there = shown.at(tick->tick);
-        for (std::size_t i = 0; i < there.X_WOthers.size(); ++i)
-            of_scenes[there.scene].place(scenes.scenes[there.scene].spec.heldBy(i + 1), there.X_WOthers[i]);
+        for (std::size_t i = 0; i < there.X_WOthers.size(); ++i) {
+            const scene::SceneSpec& spec = scenes.scenes[there.scene].spec;
+            const std::size_t part = spec.heldBy(i + 1);
+            of_scenes[there.scene].place(part, there.X_WOthers[i].value_or(spec.parts[part].X_WP));
+        }
         const truth::Overlap found =
             of_scenes[there.scene].at(there.X_WG, {.tolerance = kTolerance,
                                                    .share = kShare,

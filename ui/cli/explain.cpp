@@ -80,11 +80,12 @@ void printSpared(const scene::Scene& scene) {
          fmt::format("nobody holds either of them; {} of {} parts rest", still, scene.parts.size()));
 }
 
-/// Of the held part, if the scene has gravity: what is felt and seen of it, and what is not.
-void printWeight(const scene::Scene& scene) {
-    const scene::PartSpec& held = scene.spec.parts[scene.held];
+/// Of a hand's part, if the scene has gravity: what is felt and seen of it, and what is not.
+void printWeight(const scene::Scene& scene, std::size_t hand) {
+    const std::size_t i = scene.spec.heldBy(hand);
+    const scene::PartSpec& held = scene.spec.parts[i];
     if (!(held.density > 0.0) || scene.spec.effects.weight.gravity.isZero(0.0)) return;
-    const auto body = scene::massOf(*scene.parts[scene.held], held.density);
+    const auto body = scene::massOf(*scene.parts[i], held.density);
     const auto weight = body ? scene::weigh(scene.spec, *body) : std::nullopt;
     if (!weight) return;
     const Vec3 centre = 1e3 * body->centre, inertia = 1e6 * body->inertia.diagonal();
@@ -102,7 +103,7 @@ Result<Done> printStages(const scene::SceneSpec& spec, scene::PartCache& cache, 
     if (!scene) return scene.errors();
     printShapes(spec);
     printHands(spec);
-    printWeight(*scene);
+    for (std::size_t hand = 0; hand < spec.handCount(); ++hand) printWeight(*scene, hand);
     const scene::GeometryChoice choice = scene::geometryOf(spec);
     fmt::print("  {:<22}{}: {}\n", "geometry of contact", scene::geometryName(choice.geometry), choice.reason);
     fmt::print("  {:<22}{:>10}{:>10}  {}\n", "stage of the tick", "median µs", "p99 µs", "why it runs");

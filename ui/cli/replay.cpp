@@ -21,6 +21,13 @@ namespace {
 
 enum class Verdict { Same, Differs, NotProven, NotComparable, Damaged };
 
+/// Of an attempt that was cut off each hand's last ticks may be missing: what all have.
+void trimToShortest(std::vector<std::vector<TickRecord>>& hands) {
+    std::size_t least = hands.front().size();
+    for (const auto& records : hands) least = std::min(least, records.size());
+    for (auto& records : hands) records.resize(least);
+}
+
 /// Replays attempts of one database; parts and protocols are built once.
 class Replays {
 public:
@@ -61,6 +68,7 @@ public:
             }
             hands.push_back(*std::move(records));
         }
+        if (!attempt.end_ns) trimToShortest(hands);
         if (hands.front().empty()) {
             fmt::print("{}: NOT PROVEN: no tick of it is recorded ({})\n", nameOf(attempt), attempt.outcome);
             return Verdict::NotProven;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
+#include <filesystem>
 #include <iterator>
 #include <vector>
 
@@ -49,6 +50,25 @@ void writeRow(fmt::memory_buffer& text, std::int64_t tick, const tick::TickOutpu
                    known(f.proxy_lag));
 }
 
+/// Where a path leads.
+std::filesystem::path fileOf(const std::string& path) {
+    std::error_code unknown;
+    auto file = std::filesystem::weakly_canonical(path, unknown);
+    return unknown ? std::filesystem::path(path) : file;
+}
+
+/// Puts all tables in their places, or none.
+Result<Done> commitAll(std::deque<OutputFile>& outs, const std::vector<std::string>& paths) {
+    for (std::size_t i = 0; i < outs.size(); ++i) {
+        auto done = outs[i].commit();
+        if (done) continue;
+        std::error_code ignored;
+        for (std::size_t k = 0; k < i; ++k) std::filesystem::remove(paths[k], ignored);
+        return done.errors();
+    }
+    return Done{};
+}
+
 /// Refuses outputs that would overwrite an input or have one name, and a number of them that is not the inputs'.
 Result<Done> checkFiles(const SimulateArguments& options) {
     std::vector<std::string> inputs{options.scene};
@@ -59,7 +79,8 @@ Result<Done> checkFiles(const SimulateArguments& options) {
                      .value = fmt::format("{} files", options.outs.size())};
     for (const std::string& out : options.outs) {
         if (auto free = refuseOverwriting(out, inputs); !free) return free.errors();
-        if (std::count(options.outs.begin(), options.outs.end(), out) > 1)
+        const auto same = [&](const std::string& other) { return fileOf(other) == fileOf(out); };
+        if (std::count_if(options.outs.begin(), options.outs.end(), same) > 1)
             return Error{.message = "must be another file for each hand", .key = "--out", .value = out};
     }
     return Done{};
@@ -126,9 +147,8 @@ int simulate(const SimulateArguments& options) {
         }
         if (i % 10000 == 0) progress.show(fmt::format("{} of {} ticks", i, last + 1));
     }
-    for (OutputFile& out : outs)
-        if (const auto done = out.commit(); !done) return fail(done.errors());
-    return 0;
+    const auto done = commitAll(outs, options.outs);
+    return done ? 0 : fail(done.errors());
 }
 
 }  // namespace passung::cli

@@ -95,7 +95,7 @@ ParticipantView participantView(const Run& run, bool feels) {
     view.start_mark = view.screen == ParticipantScreen::ToStart;
     if (!run.last()) return view;
     view.X_WHeld = shownPose(*scene, *run.last());
-    view.X_WOthers = run.others();
+    view.X_WOthers.assign(run.others().begin(), run.others().end());
     if (view.screen != ParticipantScreen::Task) return view;
     if (scene->cues.visual)
         view.cue = std::min(1.0, static_cast<double>(run.last()->hand_depth_m) / scene->cues.full_depth);
@@ -103,12 +103,14 @@ ParticipantView participantView(const Run& run, bool feels) {
     return view;
 }
 
-ParticipantView playbackView(const DrawnScene& scene, const TickRecord& record, std::span<const TickRecord> others) {
+ParticipantView playbackView(const DrawnScene& scene, const TickRecord& record,
+                             std::span<const std::optional<TickRecord>> others) {
     ParticipantView view;
     view.screen = (record.status & kEngaged) != 0 ? ParticipantScreen::Task : ParticipantScreen::ToStart;
     view.scene = true;
     view.X_WHeld = shownPose(scene, record);
-    for (const TickRecord& other : others) view.X_WOthers.push_back(shownPoseOfOther(scene, other));
+    for (const std::optional<TickRecord>& other : others)
+        view.X_WOthers.push_back(other ? std::optional(shownPoseOfOther(scene, *other)) : std::nullopt);
     const bool proxy = scene.shown == plan::ShownPose::Proxy;
     view.X_WStart = poseOf(scene, record, proxy ? plan::ShownPose::Device : plan::ShownPose::Proxy);
     view.start_mark =

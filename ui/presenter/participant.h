@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,9 +28,10 @@ enum class ParticipantScreen {
 /// What the participant sees; nothing of it tells more than the condition lets them know.
 struct ParticipantView {
     ParticipantScreen screen = ParticipantScreen::Welcome;
-    bool scene = false;           // is drawn
-    Pose X_WHeld;                 // where the held part is drawn
-    std::vector<Pose> X_WOthers;  // likewise the parts in other hands, in the order of these; empty: where they start
+    bool scene = false;  // is drawn
+    Pose X_WHeld;        // where the held part is drawn
+    // Likewise the parts in other hands, in the order of these; none: where it starts.
+    std::vector<std::optional<Pose>> X_WOthers;
     bool start_mark = false;
     Pose X_WStart;
     double cue = 0.0;                                          // visual collision cue, 0 … 1
@@ -55,6 +57,6 @@ ParticipantView participantView(const Run& run, bool feels);
 /// mark's place the held part's other pose if it is another:
 /// the hand's where the proxy was drawn, the proxy's where the hand was. `others`: the same tick of the other hands.
 ParticipantView playbackView(const DrawnScene& scene, const TickRecord& record,
-                             std::span<const TickRecord> others = {});
+                             std::span<const std::optional<TickRecord>> others = {});
 
 }  // namespace passung::presenter

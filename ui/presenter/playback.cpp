@@ -4,9 +4,26 @@
 
 namespace passung::presenter {
 
+namespace {
+
+/// The record of this tick, or the last one before it; nullptr: there is none.
+const TickRecord* at(const std::vector<TickRecord>& records, std::int64_t tick) {
+    const auto later = std::upper_bound(records.begin(), records.end(), tick,
+                                        [](std::int64_t t, const TickRecord& record) { return t < record.tick; });
+    return later == records.begin() ? nullptr : &*(later - 1);
+}
+
+}  // namespace
+
 Playback::Playback(std::vector<TickRecord> records, std::shared_ptr<const DrawnScene> scene,
                    std::vector<std::vector<TickRecord>> others)
     : records_(std::move(records)), others_(std::move(others)), scene_(std::move(scene)) {
+    // A trial begins when all hands are engaged.
+    for (TickRecord& record : records_)
+        for (const std::vector<TickRecord>& other : others_) {
+            const TickRecord* there = at(other, record.tick);
+            if (there == nullptr || (there->status & kEngaged) == 0) record.status &= ~std::uint32_t{kEngaged};
+        }
     std::int64_t cycles = 0;  // exact, unlike a sum of times
     bool engaged = false;
     for (const TickRecord& record : records_) {
@@ -26,12 +43,11 @@ void Playback::seek(double time) {
     at_ = after == times_.begin() ? 0 : static_cast<std::size_t>(after - times_.begin()) - 1;
 }
 
-std::vector<TickRecord> Playback::others() const {
-    std::vector<TickRecord> ticks;
+std::vector<std::optional<TickRecord>> Playback::others() const {
+    std::vector<std::optional<TickRecord>> ticks;
     for (const std::vector<TickRecord>& records : others_) {
-        const auto later = std::upper_bound(records.begin(), records.end(), record().tick,
-                                            [](std::int64_t tick, const TickRecord& r) { return tick < r.tick; });
-        if (later != records.begin()) ticks.push_back(*(later - 1));
+        const TickRecord* there = at(records, record().tick);
+        ticks.push_back(there != nullptr ? std::optional(*there) : std::nullopt);
     }
     return ticks;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/base/tick_record.h"
@@ -32,8 +33,8 @@ public:
 
     /// The newest tick at that time.
     const TickRecord& record() const { return records_[at_]; }
-    /// The same of each other hand of which ticks were recorded.
-    std::vector<TickRecord> others() const;
+    /// The same of each other hand; none: no tick of it was recorded by then.
+    std::vector<std::optional<TickRecord>> others() const;
     const std::shared_ptr<const DrawnScene>& scene() const { return scene_; }
 
     /// The whole attempt in so many columns, the smallest and largest value of each.

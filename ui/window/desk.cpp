@@ -136,7 +136,10 @@ void Desk::bring(const std::vector<presenter::News>& news, std::span<const loop:
 void Desk::take(std::span<const loop::ScreenTick> ticks) {
     std::vector<TickRecord> records;
     records.reserve(ticks.size());
-    for (const loop::ScreenTick& tick : ticks) records.push_back(tick.record);
+    for (const loop::ScreenTick& tick : ticks) {
+        TickRecord& record = records.emplace_back(tick.record);
+        if (!tick.engaged) record.status &= ~std::uint32_t{kEngaged};  // a trial begins with all hands
+    }
     run_.take(records);
     if (ticks.empty() || !run_.scene()) return;
     const bool proxy = run_.scene()->shown == plan::ShownPose::Proxy;

@@ -94,7 +94,8 @@ void SceneModel::show(const presenter::ParticipantView& view) {
 QVariantList SceneModel::others() const {
     QVariantList others;
     for (std::size_t i = 0; i < X_WOthers_start_.size(); ++i)
-        others.append(mapOf(i < view_.X_WOthers.size() ? view_.X_WOthers[i] : X_WOthers_start_[i]));
+        others.append(
+            mapOf(i < view_.X_WOthers.size() ? view_.X_WOthers[i].value_or(X_WOthers_start_[i]) : X_WOthers_start_[i]));
     return others;
 }
 

@@ -26,6 +26,8 @@ struct Channel {
     std::size_t width() const { return type == "float64" || type == "int64" ? 8 : 4; }  // [bytes]
 };
 
+/// Hands whose ticks an attempt may have.
+inline constexpr std::size_t kMostTickStreams = 4;
 /// Name of the stream of a hand's ticks: "tick" of the first, "tick_hand_2" and so on of others. `hand`: from 0.
 std::string tickStreamName(std::size_t hand);
 /// Tells whether a stream of this name has ticks of a hand.

@@ -243,7 +243,8 @@ const std::array kRevisions = {
     // Chunks of samples and of times have a column more, which a reader from before takes for damage.
     Revision{16, "The gap that was proven at each tick, the processor's time beside the wall clock's", kRevision16, 16},
     Revision{17, "True overlaps at judged ticks of each attempt", kRevision17, 16},
-    Revision{18, "Energy of further hands", kRevision18, 16},
+    // A reader from before takes the ticks of further hands for times, and those for damage.
+    Revision{18, "Ticks and energy of further hands", kRevision18, 18},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

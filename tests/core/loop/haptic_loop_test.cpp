@@ -117,6 +117,37 @@ TEST(HapticCycle, GivesEachOfTwoHandsItsOwnDeviceAndRing) {
     EXPECT_EQ(table.last.force.norm(), 0.0);
 }
 
+TEST(HapticCycle, ShowsTheGoSignToAllHandsOnceAllAreEngaged) {
+    // Truth: definition of the trial's begin (SceneSequence). The second hand's gate asks for 100 ticks, the first
+    // one's for none.
+    auto spec = test::scene(shape::Sphere{0.02}, {Quat::Identity(), Vec3(0, 0, 0.012)}, shape::Box{0.06, 0.06, 0.02},
+                            {Quat::Identity(), Vec3(0, 0, -0.01)}, scene::ContactMethod::GodObject);
+    spec.contact.geometry = scene::Geometry::ClosedForm;
+    spec.parts[1].held = true;
+    spec.parts[1].hand = 1;
+    spec.other_hands.push_back({spec.limits, spec.registration, {1.0, 3.0, 100}, "left"});
+    const test::Bench bench(spec);
+    StillDevice ball({Quat::Identity(), Vec3(0, 0, 0.012)}), table({Quat::Identity(), Vec3(0, 0, -0.01)});
+    loop::RecordRing of_ball(256), of_table(256);
+    loop::ScreenRing screen(256);
+    const std::array screens{&screen};
+    const std::array hands{loop::HandPort{&ball, &of_ball}, loop::HandPort{&table, &of_table}};
+    loop::HapticCycle cycle(std::array{tick::SceneTurn{&bench.whole()}}, hands, true, screens);
+    for (int i = 0; i < 80; ++i) cycle.run();
+    EXPECT_FALSE(ball.last_image.running) << "the other hand is not there yet";
+    EXPECT_FALSE(table.last_image.running);
+    for (int i = 0; i < 80; ++i) cycle.run();
+    EXPECT_TRUE(ball.last_image.running);
+    EXPECT_TRUE(table.last_image.running);
+    std::vector<TickRecord> balls(256), tables(256);
+    ASSERT_EQ(of_ball.take(balls), 160u);
+    ASSERT_EQ(of_table.take(tables), 160u);
+    std::vector<loop::ScreenTick> shown(256);
+    ASSERT_EQ(screen.take(shown), 160u);
+    EXPECT_NE(balls[0].status & kEngaged, 0u);
+    for (std::size_t i = 0; i < 160; ++i) EXPECT_EQ(shown[i].engaged, (tables[i].status & kEngaged) != 0) << i;
+}
+
 TEST(HapticCycle, RecordsWhatATickTookOfTheProcessorBesideTheWallClock) {
     // Truth: closed form: a thread cannot spend more on a processor than passes on the wall, but for the two readings
     // of the wall clock inside; and what the ticks took is no more than the thread took for all.

@@ -210,7 +210,8 @@ inline Result<Done> writeAttempt(store::SessionWriter& writer, std::int64_t tria
 inline void makeOlderThanHashes(const std::string& path) {
     store::Database(path, store::OpenMode::ReadWrite)
         .execute(
-            "DROP TABLE exact_overlap; ALTER TABLE timing DROP COLUMN processor_mean_us; ALTER TABLE timing DROP "
+            "ALTER TABLE contact_energy DROP COLUMN hand; DROP TABLE exact_overlap; ALTER TABLE timing DROP COLUMN "
+            "processor_mean_us; ALTER TABLE timing DROP "
             "COLUMN "
             "processor_p99_us; ALTER TABLE timing DROP COLUMN processor_p999_us; ALTER TABLE timing DROP COLUMN "
             "processor_max_us; DROP TABLE session_hash; DROP TABLE later_change; DROP TABLE row_hash; ALTER TABLE "

@@ -56,33 +56,45 @@ std::vector<store::EventRow> eventsOf(const store::AttemptRow& attempt, const st
     return found;
 }
 
+/// The records of an attempt's hands.
+using Hands = std::vector<std::vector<TickRecord>>;
+
+Pose proxyOf(const TickRecord& record) {
+    const auto& p = record.proxy_position_m;
+    const auto& q = record.proxy_quaternion;
+    return {Quat(q[0], q[1], q[2], q[3]).normalized(), Vec3(p[0], p[1], p[2])};
+}
+
 /// The tip above the target's mouth, along its axis [m].
-double heightOverMouth(const plan::Condition& condition, const TickRecord& record) {
-    for (const scene::PartSpec& part : condition.scene.parts) {
-        if (part.name != condition.task.target) continue;
-        const auto& p = record.proxy_position_m;
-        return (part.X_WP.inverse() * Vec3(p[0], p[1], p[2])).z();
-    }
+double heightOverMouth(const plan::Condition& condition, const Hands& hands, std::int64_t tick) {
+    const auto i = static_cast<std::size_t>(tick);
+    for (const scene::PartSpec& part : condition.scene.parts)
+        if (part.name == condition.task.target)
+            return ((part.held ? proxyOf(hands.at(part.hand)[i]) : part.X_WP).inverse() * proxyOf(hands[0][i]).p).z();
     throw std::runtime_error("no target");
 }
 
 /// The recorded ticks themselves say whether the outcome happened.
-void expectOutcomeInRecords(const store::AttemptRow& attempt, std::int64_t start_ns,
-                            const std::vector<TickRecord>& records, const plan::Condition& condition) {
+void expectOutcomeInRecords(const store::AttemptRow& attempt, std::int64_t start_ns, const Hands& hands,
+                            const plan::Condition& condition) {
     const std::int64_t end_tick = (*attempt.end_ns - attempt.start_ns) / kTickNanoseconds;
     const std::int64_t start_tick = (start_ns - attempt.start_ns) / kTickNanoseconds;
-    ASSERT_LT(static_cast<std::size_t>(end_tick), records.size());
-    const auto at = [&](std::int64_t tick) { return records[static_cast<std::size_t>(tick)]; };
-    EXPECT_EQ(at(start_tick).status & kEngaged, kEngaged);
-    ASSERT_GT(start_tick, 0) << "the hand holds the start pose first";
-    EXPECT_EQ(at(start_tick - 1).status & kEngaged, 0u);
+    for (const auto& records : hands) ASSERT_LT(static_cast<std::size_t>(end_tick), records.size());
+    const auto areEngaged = [&](std::int64_t tick) {
+        return std::all_of(hands.begin(), hands.end(), [&](const std::vector<TickRecord>& records) {
+            return (records[static_cast<std::size_t>(tick)].status & kEngaged) != 0;
+        });
+    };
+    EXPECT_TRUE(areEngaged(start_tick));
+    ASSERT_GT(start_tick, 0) << "the hands hold their start poses first";
+    EXPECT_FALSE(areEngaged(start_tick - 1));
     const auto* peg = std::get_if<plan::PegInHoleTask>(&condition.task.form);
     if (peg == nullptr) return;  // trial_types_test.cpp has the other types
     const plan::PegInHoleTask& task = *peg;
     if (attempt.outcome == "success") {
         const auto hold = static_cast<std::int64_t>(std::llround(task.hold / kTickSeconds));
         for (std::int64_t tick = end_tick - hold; tick <= end_tick; ++tick) {
-            ASSERT_LE(heightOverMouth(condition, at(tick)), -task.success_fraction * task.insertion_depth + 1e-9);
+            ASSERT_LE(heightOverMouth(condition, hands, tick), -task.success_fraction * task.insertion_depth + 1e-9);
         }
         EXPECT_LT(end_tick - start_tick, condition.task.timeout / kTickSeconds);
     } else {
@@ -137,13 +149,17 @@ TEST_P(ShippedStudy, RunsToItsDataFileAndEveryRowSaysWhatHappened) {
         EXPECT_EQ(attempt.measures.at("success"), attempt.outcome == "success" ? 1.0 : 0.0);
         const auto seconds = static_cast<double>(*attempt.end_ns - happened.front().t_ns) * 1e-9;
         EXPECT_NEAR(attempt.measures.at("trial_time_s"), seconds, 1e-9);
-        const auto records = reader->records(attempt.attempt_id);
-        ASSERT_TRUE(records);
         const auto condition = std::find_if(plan->conditions.begin(), plan->conditions.end(),
                                             [&](const auto& c) { return c.name == attempt.presented_condition; });
         ASSERT_NE(condition, plan->conditions.end());
         if (condition->timed_by != plan::TimedBy::Program) continue;  // nothing of it is in the ticks
-        expectOutcomeInRecords(attempt, happened.front().t_ns, *records, *condition);
+        Hands hands;
+        for (std::size_t hand = 0; hand < condition->scene.handCount(); ++hand) {
+            auto records = reader->records(attempt.attempt_id, hand);
+            ASSERT_TRUE(records);
+            hands.push_back(*std::move(records));
+        }
+        expectOutcomeInRecords(attempt, happened.front().t_ns, hands, *condition);
     }
     for (const auto& [outcome, count] : outcomes)
         std::printf("%s: %d %s\n", GetParam().c_str(), count, outcome.c_str());

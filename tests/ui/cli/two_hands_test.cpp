@@ -90,6 +90,15 @@ TEST_F(TwoHands, SimulateRefusesWhatDoesNotFitTheHands) {
     const Ended same = program({"simulate", "scene.toml", "--trajectory", "a.csv", "--trajectory", "a.csv", "--out",
                                 "a_out.csv", "--out", "a_out.csv"});
     EXPECT_EQ(same.exit_code, 1) << same.err;
+    const Ended alike = program({"simulate", "scene.toml", "--trajectory", "a.csv", "--trajectory", "a.csv", "--out",
+                                 "a_out.csv", "--out", "./a_out.csv"});
+    EXPECT_EQ(alike.exit_code, 1) << alike.err;
+    const Ended nowhere = program({"simulate", "scene.toml", "--trajectory", "a.csv", "--trajectory", "a.csv", "--out",
+                                   "a_out.csv", "--out", "no/such/folder/b_out.csv"});
+    EXPECT_EQ(nowhere.exit_code, 1) << nowhere.err;
+    const Ended measured = program({"accuracy", "scene.toml", "--trajectory", "a.csv", "--out", "acc.csv"});
+    EXPECT_EQ(measured.exit_code, 1) << measured.err;
+    EXPECT_NE(measured.err.find("has more than one hand"), std::string::npos) << measured.err;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "a_out.csv"));
 }
 
@@ -173,7 +182,7 @@ TEST_F(TwoHandStudy, RunsReplaysAndExports) {
     }
     std::size_t of_first = 0, of_second = 0;
     for (const auto& file : std::filesystem::directory_iterator(folder_ / "tables/samples"))
-        ++(file.path().string().ends_with("_hand2.csv.gz") ? of_second : of_first);
+        ++(file.path().string().ends_with("_left.csv.gz") ? of_second : of_first);
     EXPECT_EQ(of_first, attempts->size());
     EXPECT_EQ(of_second, attempts->size());
 }
