@@ -47,6 +47,7 @@ std::vector<session::ContactEnergy> contactEnergy(std::span<const scene::Scene> 
 template <class Hands>
 std::vector<loop::HandPort> portsOf(const Hands& hands) {
     std::vector<loop::HandPort> ports;
+    ports.reserve(hands.size());
     for (const auto& hand : hands) ports.push_back({hand.held.device.get(), hand.ring.get()});
     return ports;
 }

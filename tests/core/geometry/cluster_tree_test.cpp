@@ -108,6 +108,7 @@ TEST(ClusterTree, OfManyPartsThoseThatAreNearEachOtherAreClusters) {
     const ClusterTree box(mesh);
     const auto triangles = static_cast<std::uint32_t>(mesh.triangles.size());
     std::vector<PlacedTree> placed;
+    placed.reserve(64);
     for (int i = 0; i < 64; ++i) placed.push_back({&box, {Quat::Identity(), Vec3(0.1 * i, 0.001 * (i % 7), 0)}});
     shuffle(placed, random);
     const ClusterTree whole{std::span<const PlacedTree>(placed)};

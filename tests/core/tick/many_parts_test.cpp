@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 
 #include "core/base/random.h"
 #include "tests/support/rt_guard.h"
@@ -58,7 +59,10 @@ void searchBy(tick::HandState& state, NearList::Search search) {
     state.around_hand.near.searchBy(search);
 }
 
-bool same(const Vec3& a, const Vec3& b) { return std::memcmp(a.data(), b.data(), sizeof a) == 0; }
+bool same(const Vec3& a, const Vec3& b) {
+    const auto bits = [](const Vec3& v, int i) { return std::bit_cast<std::uint64_t>(v[i]); };
+    return bits(a, 0) == bits(b, 0) && bits(a, 1) == bits(b, 1) && bits(a, 2) == bits(b, 2);
+}
 
 struct Kind {
     Geometry geometry;

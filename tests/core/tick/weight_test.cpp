@@ -137,7 +137,7 @@ TEST_P(WeightOfLying, APartOnATableIsNoneOnceTheHandIsDown) {
     double before = -kCubeWeight - slack;
     constexpr int kSteps = 60;
     for (int i = -10; i <= kSteps; ++i) {
-        const double h = hang * (1.0 - static_cast<double>(i) / (kSteps / 2));  // down to -f/K
+        const double h = hang * (1.0 - 2.0 * static_cast<double>(i) / kSteps);  // down to -f/K
         tick::TickOutput out;
         for (int k = 0; k < 10; ++k) out = bench.step(at(kHalf + h));
         const double force = out.frame.F_H_W.force.z();
@@ -328,7 +328,7 @@ TEST(Weight, IsNoEnergyThatTheControllerTakesInOrGives) {
 TEST(Weight, IsLeftOutOfTheAccountOnlyWhereItIsSent) {
     // Truth: closed form. Nothing displayed → nothing taken in. Half of it cut by the device's limit → lifting takes in
     // half of it less than lowering is due: -f/2 per height, and 0 again down. A delay changes nothing in the end.
-    const auto lift = [](scene::SceneSpec spec, double& up) {
+    const auto lift = [](const scene::SceneSpec& spec, double& up) {
         test::Bench bench(spec);
         double energy = 0.0;
         for (int i = 0; i <= 2400; ++i) {

@@ -48,7 +48,7 @@ std::string pathOf(double x_begin, double x_end) {
 
 class TwoHands : public testing::Test {
 protected:
-    Ended program(std::vector<std::string> arguments) const { return runProgram(folder_.path(), arguments); }
+    Ended program(const std::vector<std::string>& arguments) const { return runProgram(folder_.path(), arguments); }
 
     TempFolder folder_;
 };
