@@ -46,11 +46,13 @@ World makeWorld(const scene::Scene& scene) {
     World world;
     world.geometry = scene::geometryOf(scene.spec).geometry;
     std::vector<const scene::Part*> built;
+    built.reserve(scene.parts.size());
     for (const auto& part : scene.parts) built.push_back(part.get());
     std::sort(built.begin(), built.end());
     built.erase(std::unique(built.begin(), built.end()), built.end());
     world.solids.reserve(built.size());
     std::vector<Body> bodies;
+    bodies.reserve(built.size());
     for (const scene::Part* part : built) bodies.push_back(bodyOf(*part, world.geometry, world));
     for (std::size_t i = 0; i < scene.parts.size(); ++i) {
         const auto at = std::lower_bound(built.begin(), built.end(), scene.parts[i].get());
