@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "study/measures/overlap.h"
+#include "study/session/hands_view.h"
 
 namespace passung::run {
 namespace {
@@ -15,26 +16,6 @@ constexpr double kShare = 0.03;                       // of a depth besides
 constexpr double kIgnored = measures::kLeastOverlap;  // of a depth [m]
 constexpr std::size_t kMostPieces = 800'000;          // of a trial: a fifth of a second
 constexpr std::size_t kMostPiecesOfTick = 20'000;     // of surfaces
-
-/// Records of the other hands, tick by tick.
-class OtherHands {
-public:
-    explicit OtherHands(std::span<const std::vector<TickRecord>> hands) : hands_(hands), at_(hands.size()) {}
-
-    /// Their records of `tick`, or the last ones before it; nullptr: there is none. @pre `tick` rises
-    std::vector<const TickRecord*> next(std::int64_t tick) {
-        std::vector<const TickRecord*> records;
-        for (std::size_t i = 0; i < hands_.size(); ++i) {
-            while (at_[i] + 1 < hands_[i].size() && hands_[i][at_[i] + 1].tick <= tick) ++at_[i];
-            records.push_back(hands_[i].empty() || hands_[i][at_[i]].tick > tick ? nullptr : &hands_[i][at_[i]]);
-        }
-        return records;
-    }
-
-private:
-    std::span<const std::vector<TickRecord>> hands_;
-    std::vector<std::size_t> at_;
-};
 
 bool areEngaged(const TickRecord& record, std::span<const TickRecord* const> others) {
     return (record.status & kEngaged) != 0 && std::all_of(others.begin(), others.end(), [](const TickRecord* other) {
@@ -88,10 +69,10 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
     std::map<std::int64_t, Shown> shown;
     for (const measures::TickOverlap& tick : ticks) shown[tick.tick] = {};
     TurnOf turn(scenes.turns);
-    OtherHands other_hands(others);
     auto judged = shown.begin();
     for (const TickRecord& record : trial) {
-        const std::vector<const TickRecord*> beside = other_hands.next(record.tick);
+        std::vector<const TickRecord*> beside;
+        for (const auto& records : others) beside.push_back(session::recordAt(records, record.tick));
         const std::size_t scene = turn.next(record, areEngaged(record, beside));
         while (judged != shown.end() && judged->first < record.tick) ++judged;
         if (judged == shown.end() || judged->first != record.tick) continue;

@@ -21,14 +21,13 @@ std::array<float, 4> stored(const Quat& q) {
     return {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z())};
 }
 
-/// The record of `tick`, or the last one before it; nullptr if there is none.
-const TickRecord* recordAt(const std::vector<TickRecord>& records, std::int64_t tick) {
+}  // namespace
+
+const TickRecord* recordAt(std::span<const TickRecord> records, std::int64_t tick) {
     const auto later = std::upper_bound(records.begin(), records.end(), tick,
                                         [](std::int64_t t, const TickRecord& record) { return t < record.tick; });
     return later == records.begin() ? nullptr : &*(later - 1);
 }
-
-}  // namespace
 
 HandsView::HandsView(const plan::Condition& condition) : other_hands_(condition.scene.handCount() - 1) {
     if (std::holds_alternative<plan::FreePlacementTask>(condition.task.form)) return;  // its goal is in the world

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,6 +10,9 @@
 #include "study/plan/study_plan.h"
 
 namespace passung::session {
+
+/// The record of `tick` among ascending ones, or the last one before it; nullptr: there is none.
+const TickRecord* recordAt(std::span<const TickRecord> records, std::int64_t tick);
 
 /// By what of its ticks an attempt is judged where the scene has several hands. Of one hand: by its records as they
 /// are.

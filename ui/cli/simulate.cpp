@@ -63,7 +63,8 @@ Result<Done> commitAll(std::deque<OutputFile>& outs, const std::vector<std::stri
         auto done = outs[i].commit();
         if (done) continue;
         std::error_code ignored;
-        for (std::size_t k = 0; k < i; ++k) std::filesystem::remove(paths[k], ignored);
+        for (std::size_t k = 0; k < i; ++k)  // no pipe, no device
+            if (std::filesystem::is_regular_file(paths[k], ignored)) std::filesystem::remove(paths[k], ignored);
         return done.errors();
     }
     return Done{};

@@ -2,18 +2,9 @@
 
 #include <algorithm>
 
+#include "study/session/hands_view.h"
+
 namespace passung::presenter {
-
-namespace {
-
-/// The record of this tick, or the last one before it; nullptr: there is none.
-const TickRecord* at(const std::vector<TickRecord>& records, std::int64_t tick) {
-    const auto later = std::upper_bound(records.begin(), records.end(), tick,
-                                        [](std::int64_t t, const TickRecord& record) { return t < record.tick; });
-    return later == records.begin() ? nullptr : &*(later - 1);
-}
-
-}  // namespace
 
 Playback::Playback(std::vector<TickRecord> records, std::shared_ptr<const DrawnScene> scene,
                    std::vector<std::vector<TickRecord>> others)
@@ -21,7 +12,7 @@ Playback::Playback(std::vector<TickRecord> records, std::shared_ptr<const DrawnS
     // A trial begins when all hands are engaged.
     for (TickRecord& record : records_)
         for (const std::vector<TickRecord>& other : others_) {
-            const TickRecord* there = at(other, record.tick);
+            const TickRecord* there = session::recordAt(other, record.tick);
             if (there == nullptr || (there->status & kEngaged) == 0) record.status &= ~std::uint32_t{kEngaged};
         }
     std::int64_t cycles = 0;  // exact, unlike a sum of times
@@ -46,7 +37,7 @@ void Playback::seek(double time) {
 std::vector<std::optional<TickRecord>> Playback::others() const {
     std::vector<std::optional<TickRecord>> ticks;
     for (const std::vector<TickRecord>& records : others_) {
-        const TickRecord* there = at(records, record().tick);
+        const TickRecord* there = session::recordAt(records, record().tick);
         ticks.push_back(there != nullptr ? std::optional(*there) : std::nullopt);
     }
     return ticks;
