@@ -37,7 +37,7 @@ struct LineView {
     Mat3 R_WS;  // the lump's part
     Vec3 p_WS;
     Curve line;   // in S
-    Vec3 origin;  // of the held part, in S
+    Vec3 origin;  // where the held part is held, in S
     double sign;  // of what a motion of the held part does to the gap: 1 if the line moves, -1 if the lump does
     Quat line_q;  // of the line's part, in S
 };
@@ -51,10 +51,10 @@ LineView viewOf(const SolidPair& pair, const Pose& X_WH, const TouchName& name) 
     const Curve& line = lineOf(pair, name);
     if (name.of_held) {
         const Pose X_OH = pair.X_WO.inverse() * X_WH;
-        return {pair.X_WO.q.toRotationMatrix(), pair.X_WO.p, moved(X_OH, line), X_OH.p, 1.0, X_OH.q};
+        return {pair.X_WO.q.toRotationMatrix(), pair.X_WO.p, moved(X_OH, line), pair.metric.centre(X_OH), 1.0, X_OH.q};
     }
     const Pose X_HO = X_WH.inverse() * pair.X_WO;
-    return {X_WH.q.toRotationMatrix(), X_WH.p, moved(X_HO, line), Vec3::Zero(), -1.0, X_HO.q};
+    return {X_WH.q.toRotationMatrix(), X_WH.p, moved(X_HO, line), pair.metric.p_GC, -1.0, X_HO.q};
 }
 
 const Lump& lumpOf(const SolidPair& pair, const TouchName& name) noexcept {
@@ -135,7 +135,7 @@ Contact contactOf(const SolidPair& pair, const LineView& view, const TouchName& 
     }
     contact.point = view.R_WS * p + view.p_WS;
     contact.normal = view.R_WS * (view.sign * gradient);
-    contact.a = inWorld(view, pair.metric_radius, slopeBy(view, p - view.origin, gradient));
+    contact.a = inWorld(view, pair.metric.radius, slopeBy(view, p - view.origin, gradient));
     return contact;
 }
 
@@ -392,7 +392,7 @@ void ContactSearch::look(PlacedPair& placed, double reach, bool closely, Meeting
     }
     meeting.bound = std::max(meeting.bound, closer);
     meeting.reach = std::min(reach, 0.0);
-    meeting.lever = (piece.middle - view.origin).norm() + piece.extent;
+    meeting.lever = (piece.middle - view.origin).norm() + piece.extent + pair_.metric.distance();
     meeting.way = way_;
     meeting.turn = turn_;
     for (const Touch& touch : touches.all()) take(view, touch);
@@ -422,7 +422,7 @@ MotionMatrix curvatureOf(const SolidPair& pair, const Pose& X_WH, const Contact&
     const MotionMatrix H = curvatureInS(view, lumpOf(pair, contact.name).faces, contact.touch, slides);
     MotionMatrix T = MotionMatrix::Zero();
     T.topLeftCorner<3, 3>() = view.R_WS;
-    T.bottomRightCorner<3, 3>() = T.topLeftCorner<3, 3>() / pair.metric_radius;
+    T.bottomRightCorner<3, 3>() = T.topLeftCorner<3, 3>() / pair.metric.radius;
     return T * H * T.transpose();
 }
 

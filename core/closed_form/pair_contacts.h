@@ -8,6 +8,7 @@
 #include "core/closed_form/thread_search.h"
 #include "core/closed_form/touch_search.h"
 #include "core/motion/active_set.h"
+#include "core/motion/metric.h"
 
 namespace passung::closed_form {
 
@@ -29,7 +30,7 @@ struct Contact {
     double gap = 0.0;                           // [m]
     Vec3 point = Vec3::Zero();                  // on the line, world [m]
     Vec3 normal = Vec3::Zero();                 // away from the obstacle, world; of a kink not of length 1
-    motion::Motion a = motion::Motion::Zero();  // (n, r × n / ρ)
+    motion::Motion a = motion::Motion::Zero();  // motion::Metric::rowOf
     double lean = 0.0;  // by which the normal leaves those that the line's own edge can have [rad]; 0: a contact
 };
 
@@ -43,8 +44,8 @@ double overlapOf(const PairContacts& contacts) noexcept;
 struct SolidPair {
     const SmoothSolid* held;
     const SmoothSolid* obstacle;
-    Pose X_WO;             // of the obstacle
-    double metric_radius;  // ρ [m], > 0
+    Pose X_WO;              // of the obstacle
+    motion::Metric metric;  // of the held part's motions
 };
 
 /// A pair at a pose, with what follows from that for all of its lines.
@@ -67,6 +68,8 @@ public:
     /// The obstacle is elsewhere from now on. What is known of lines and lumps is kept: seen from the obstacle the held
     /// part has moved by the inverse. True if it is elsewhere. rt-safe.
     bool place(const Pose& X_WO) noexcept;
+    /// The held part is held at another point from now on. rt-safe.
+    void measureBy(const motion::Metric& metric) noexcept { pair_.metric = metric; }
     /// Pieces of lines times lumps of the other part that a look may have to look at, threads' apart.
     std::size_t meetings() const noexcept;
 

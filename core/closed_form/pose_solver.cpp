@@ -22,18 +22,6 @@ constexpr int kMostReleases = 4;         // of rows that were made stiff, in a l
 constexpr double kRowTolerance = 1e-12;  // [m]
 constexpr double kMostLean = 0.02;       // [rad]
 
-motion::Motion wayTo(const Pose& X_WG, const Pose& X_WH, double rho) noexcept {
-    motion::Motion w;
-    w << X_WH.p - X_WG.p, rho * rotationVector(X_WH.q * X_WG.q.conjugate());
-    return w;
-}
-
-Pose movedBy(const Pose& X, const motion::Motion& u, double rho) noexcept {
-    Pose there{rotationFromVector(u.tail<3>() / rho) * X.q, X.p + u.head<3>()};
-    there.q.normalize();
-    return there;
-}
-
 /// B = L Lᵀ. False: some of B is not stiff enough.
 bool isStiff(const MotionMatrix& B, MotionMatrix& L) noexcept {
     const Eigen::LLT<MotionMatrix> chol(B);
@@ -57,12 +45,19 @@ PoseSolver::PoseSolver(std::span<const SolidPair> pairs, geometry::NearList near
         all_.resize(pairs.size());
         std::iota(all_.begin(), all_.end(), 0u);
     }
+    if (!pairs.empty()) metric_ = pairs.front().metric;
     for (const SolidPair& pair : pairs) {
         meetings_.push_back(static_cast<int>(searches_.emplace_back(pair).meetings()));
         reach_ = std::max(reach_, reachOf(*pair.held));
         sight_ = std::min({sight_, sightOf(*pair.held), sightOf(*pair.obstacle)});
         longest_way_ = std::min({longest_way_, 0.5 * thicknessOf(*pair.held), 0.5 * thicknessOf(*pair.obstacle)});
     }
+}
+
+void PoseSolver::measureBy(const motion::Metric& metric) noexcept {
+    metric_ = metric;
+    for (ContactSearch& search : searches_) search.measureBy(metric);
+    X_found_.reset();
 }
 
 void PoseSolver::add(const Row& row) noexcept {
@@ -82,8 +77,7 @@ double PoseSolver::reachFor(const motion::Motion& wanted) const noexcept {
 
 /// No point of the held part goes farther.
 double PoseSolver::wayOf(const motion::Motion& u) const noexcept {
-    const double rho = searches_.empty() ? 1.0 : pair(0).metric_radius;
-    return u.head<3>().norm() + reach_ / rho * u.tail<3>().norm();
+    return u.head<3>().norm() + (reach_ + metric_.distance()) / metric_.radius * u.tail<3>().norm();
 }
 
 /// What the last look of a tick has found holds for the first one of the next.
@@ -262,10 +256,10 @@ motion::Motion PoseSolver::step(const Pose& X, const motion::Motion& wanted, boo
 
 /// What of a look's motion is safe to make.
 motion::Motion PoseSolver::shortened(const motion::Motion& u) const noexcept {
-    const double rho = searches_.empty() ? 1.0 : pair(0).metric_radius;
     const double way = wayOf(u);
     if (way < free_) return u;
-    const double turn = u.tail<3>().norm() / rho, rise = reach_ * turn * turn / 8.0;
+    const double turn = u.tail<3>().norm() / metric_.radius;
+    const double rise = (reach_ + metric_.distance()) * turn * turn / 8.0;
     const double share = std::min({longest_way_ / way, kLongestLook / u.norm(), std::sqrt(kMostRise / rise)});
     return std::min(1.0, std::max(share, free_ / way)) * u;
 }
@@ -284,13 +278,12 @@ motion::Motion PoseSolver::offRidge(const motion::Motion& way, const PoseMemory&
 ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most) noexcept {
     ConstrainedPose result{.X_WG = X_WG};
     way_.clear();
-    const double rho = searches_.empty() ? 1.0 : pair(0).metric_radius;
     Pose X = X_WG;
     double last = std::numeric_limits<double>::infinity();  // length of the last look's motion
     double astray = 0.0;                                    // of the motions since the last pose that counts
     bool left = false;                                      // a ridge
     for (int i = 0;; ++i) {
-        const motion::Motion wanted = wayTo(X, X_WH, rho);
+        const motion::Motion wanted = metric_.between(X, X_WH);
         find(X, reachFor(wanted));
         if (i == 0) most = std::min(most, most_looks_);
         if (i == 0) allowed_ = std::max(0.0, overlap_ - kRepair);
@@ -311,14 +304,14 @@ ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory
         PoseMemory aside = memory;
         motion::Motion u = back ? step(X, motion::Motion::Zero(), true, aside) : step(X, wanted, false, memory);
         if (!left && kept && u.norm() <= kStillMoving) {
-            const motion::Motion off = offRidge(wayTo(X_WG, X, rho), memory);
+            const motion::Motion off = offRidge(metric_.between(X_WG, X), memory);
             left = off.squaredNorm() > 0.0;
             u += off;
         }
         const motion::Motion made = shortened(u);
         last = back ? std::numeric_limits<double>::infinity() : u.norm();
         astray += back ? 0.0 : made.norm();
-        X = movedBy(X, made, rho);
+        X = metric_.moved(X, made);
     }
 }
 

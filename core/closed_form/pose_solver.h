@@ -34,7 +34,7 @@ struct ConstrainedPose {
     bool converged = true;  // false: the looks were used up, or nothing was allowed
     bool full = false;      // more contacts than there is room for: PairContacts::full()
     motion::Motion pull =
-        motion::Motion::Zero();  // what is left of the way to the hand, (Δx, ρ Δφ) [m]: the spring's wrench over K
+        motion::Motion::Zero();  // what is left of the way to the hand [m]: the spring's wrench over K
 };
 
 inline constexpr int kMostLooks = 24;
@@ -56,7 +56,7 @@ inline constexpr int kKeptLooks = 6;
 inline constexpr double kNearWays = 4.0, kLeastNear = 4e-3;  // [m]
 
 /// Finds the pose nearest to the hand's without overlap, from a free one on:
-///   min ½|x_H - x|² + ½ρ²|φ|²   s.t.   all gaps ≥ 0,
+///   min ½|w|²   s.t.   all gaps ≥ 0,   w the way to the hand's pose in the pairs' metric (motion/metric.h),
 /// by sequential quadratic programming: each look minimises ½ uᵀ B u - wᵀ u under a_i · u ≥ -gap_i, B = 1 - Σ λ_i H_i,
 /// λ of the look before. B is the algorithm: play of 10 µm with the hand 3 mm away has a constraint of 10 µm radius,
 /// past which rows alone run tangentially at every look. There B is not positive, mostly only across rows that hold: as
@@ -83,8 +83,8 @@ inline constexpr double kNearWays = 4.0, kLeastNear = 4e-3;  // [m]
 /// What a solver knows of earlier poses changes its time, never its result.
 class PoseSolver {
 public:
-    /// The held part's pairs, with one ρ. Their solids outlive this. `near`: of the same parts, in this order; without
-    /// one all are near.
+    /// The held part's pairs, with one metric. Their solids outlive this. `near`: of the same parts, in this order;
+    /// without one all are near.
     explicit PoseSolver(std::span<const SolidPair> pairs, geometry::NearList near = {});
 
     /// In at most `most` looks, and no more than kMostMeetings lets it have. rt-safe.
@@ -94,6 +94,9 @@ public:
     void place(std::size_t i, const Pose& X_WO) noexcept {
         if (searches_[i].place(X_WO)) X_found_.reset();
     }
+
+    /// The held part is held at another point from now on. rt-safe.
+    void measureBy(const motion::Metric& metric) noexcept;
 
     /// Poses without overlap that the last solve went through, from its start on: the proxy's way.
     std::span<const Pose> way() const noexcept { return way_.all(); }
@@ -146,6 +149,7 @@ private:
     std::size_t count_ = 0, found_ = 0;        // rows; those of them that were found at `X_found_`
     double overlap_ = 0.0, free_ = 0.0;        // there; a way that is proven to be free [m]
     std::optional<Pose> X_found_;
+    motion::Metric metric_;
     double found_reach_ = 0.0;                        // how near pairs were looked at there [m]
     bool full_ = false;                               // there
     motion::Motion ridge_ = motion::Motion::Zero();   // of the last look: where its B curves down

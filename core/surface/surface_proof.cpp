@@ -269,12 +269,7 @@ bool SurfaceProxy::provesTurning(const HullPair& pair, const PlaneAt& from, cons
     return 0.5 * (held + leastReachOf(pair.obstacle, pair.of_obstacle, -(from.n + to.n))) >= need;
 }
 
-Pose SurfaceProxy::poseOnWay(double share) const noexcept {
-    const Vec3 turn = u_.tail<3>() / settings_.metric_radius;
-    Pose X{rotationFromVector(share * turn) * X_.q, X_.p + share * u_.head<3>()};
-    X.q.normalize();
-    return X;
-}
+Pose SurfaceProxy::poseOnWay(double share) const noexcept { return settings_.metric.moved(X_, u_, share); }
 
 /// True if no point of the way between two poses comes nearer than `need`.
 bool SurfaceProxy::staysApart(const HullPair& pair, const PlaneAt& from, const PlaneAt& to, double need) noexcept {

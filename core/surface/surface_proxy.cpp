@@ -45,12 +45,6 @@ std::size_t pairsFor(const ClusterTree& held, std::span<const SurfaceBody> bodie
     return std::clamp<std::size_t>(16 * size, 1u << 16, 1u << 20);
 }
 
-motion::Motion motionTo(const Pose& X, const Pose& X_WH, double rho) noexcept {
-    motion::Motion w;
-    w << X_WH.p - X.p, rho * rotationVector(X_WH.q * X.q.conjugate());
-    return w;
-}
-
 }  // namespace
 
 SurfaceProxy::SurfaceProxy(const ClusterTree& held, const ClusterTree& obstacles, const SurfaceSettings& settings)
@@ -94,6 +88,11 @@ void SurfaceProxy::place(const Pose& X_WG) noexcept {
     phase_ = Phase::Idle;
 }
 
+void SurfaceProxy::measureBy(const motion::Metric& metric) noexcept {
+    settings_.metric = metric;
+    place(X_);
+}
+
 void SurfaceProxy::prepare() {
     budget_ = std::numeric_limits<int>::max();
     tick_ = {};
@@ -121,18 +120,17 @@ double SurfaceProxy::wayBetween(const Placement& from, const Placement& to) cons
 /// Sets the end of the look to `u_`, made shorter where it goes farther than `most` or turns too far.
 void SurfaceProxy::limit(double most) noexcept {
     const double rise = kArcShare * std::max(least_, kLeastGap * 0.01);
-    const double angle = u_.tail<3>().norm() / settings_.metric_radius;
-    const double most_angle = std::sqrt(8.0 * rise / std::max(held_->reach(), 1e-9));
+    const double angle = u_.tail<3>().norm() / settings_.metric.radius,
+                 reach = held_->reach() + settings_.metric.distance();
+    const double most_angle = std::sqrt(8.0 * rise / std::max(reach, 1e-9));
     if (angle > most_angle) {
         u_ *= most_angle / angle;
         limited_ = true;
     }
     for (int i = 0;; ++i) {
-        const Vec3 turn = u_.tail<3>() / settings_.metric_radius;
-        X_next_ = {rotationFromVector(turn) * X_.q, X_.p + u_.head<3>()};
-        X_next_.q.normalize();
+        X_next_ = settings_.metric.moved(X_, u_);
         P_next_ = Placement(X_next_);
-        arc_ = held_->reach() * turn.squaredNorm() / 8.0;
+        arc_ = reach * settings_.metric.turnOf(u_).squaredNorm() / 8.0;
         way_ = wayBetween(P_, P_next_) + arc_;
         if (way_ <= most || i == 8) break;
         u_ *= 0.98 * most / way_;
@@ -225,7 +223,7 @@ void SurfaceProxy::solve() noexcept {
         contact.phi = std::max(row.s - gap_, -ease_) + row.bend;
         manifold_.tryPush(contact);
     }
-    const motion::Surroundings around{manifold_, X_.p, settings_.metric_radius, 0.0};
+    const motion::Surroundings around{manifold_, settings_.metric.centre(X_), settings_.metric.radius, 0.0};
     const motion::ConstrainedMotion result = motion::constrainMotion(wanted_, around, {likely.data(), likely_count});
     u_ = result.u;
     for (int i = 0; i < result.active; ++i) {
@@ -281,7 +279,7 @@ bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
     refreshRows();
     if (tick_.looks == 0) adaptGap();
     ease_ = tick_.looks == 0 ? kEase : 0.0;
-    wanted_ = motionTo(X_, X_WH_, settings_.metric_radius);
+    wanted_ = settings_.metric.between(X_, X_WH_);
     if (!(most_in_tick_ - way_in_tick_ > kStill)) return false;
     if (overlaps_) {
         wanted_ = wayOut();
@@ -369,8 +367,8 @@ void SurfaceProxy::bendRows() noexcept {
     for (std::size_t i = 0; i < row_count_; ++i) {
         ContactRow& row = rows_[i];
         const double linear =
-            row.s +
-            normalOf(row).dot(Vec3(u_.head<3>() + (u_.tail<3>() / settings_.metric_radius).cross(pointOf(row) - X_.p)));
+            row.s + normalOf(row).dot(Vec3(
+                        u_.head<3>() + settings_.metric.turnOf(u_).cross(pointOf(row) - settings_.metric.centre(X_))));
         row.bend = std::min(0.0, row.gapAt(bodies_[row.body].P_next) - linear);
     }
 }

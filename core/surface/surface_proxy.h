@@ -9,6 +9,7 @@
 
 #include "core/contact/contact_query.h"
 #include "core/motion/constrained_motion.h"
+#include "core/motion/metric.h"
 #include "core/surface/contact_row.h"
 #include "core/surface/pair_forest.h"
 #include "core/surface/surface_body.h"
@@ -16,7 +17,7 @@
 namespace passung::surface {
 
 struct SurfaceSettings {
-    double metric_radius = 0.0;  // ρ: makes a rotation comparable with a translation [m], > 0
+    motion::Metric metric = {};  // of the held part's motions
     double gap = 1e-6;           // held between the parts where there is room for it [m]
     int budget = 38000;          // units of work in a tick
 };
@@ -89,6 +90,8 @@ public:
 
     /// Puts the held part somewhere; the past is void. rt-safe; the next ticks find out what is near.
     void place(const Pose& X_WG) noexcept;
+    /// The held part is held at another point from now on; the past is void. rt-safe.
+    void measureBy(const motion::Metric& metric) noexcept;
     /// Finds out what is near, whatever it takes. For the time before the first tick.
     void prepare();
 

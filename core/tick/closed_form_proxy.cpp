@@ -11,12 +11,12 @@ namespace passung::tick {
 namespace {
 
 /// In place of the pushes so far: K λ along each contact's normal (contact_energy.h).
-void noteHold(const HandModel& model, const Proxy& proxy, const closed_form::PoseMemory& hold,
+void noteHold(const HandModel& model, const HeldTarget& target, const Proxy& proxy, const closed_form::PoseMemory& hold,
               Pushes& pushes) noexcept {
     clearPushes(pushes);
     for (const closed_form::HeldContact& held : hold.all()) {
         const Vec3 push = held.push * held.contact.normal;
-        addPush(model, proxy.X_WG.p, held.contact.point, push, model.contact.stiffness * push.norm(),
+        addPush(model, target, proxy.X_WG, held.contact.point, push, model.contact.stiffness * push.norm(),
                 pushes.pushes[held.pair]);
     }
 }
@@ -36,7 +36,7 @@ std::vector<closed_form::SolidPair> pairsOf(const HandModel& model) {
     std::vector<closed_form::SolidPair> pairs;
     for (std::size_t i = 0; i < model.obstacles.size(); ++i)
         pairs.push_back({model.held_solid, model.obstacles[i].solid, model.bodies[model.obstacles[i].body].X_WP_start,
-                         model.metric_radius});
+                         motion::Metric{model.metric_radius}});
     return pairs;
 }
 
@@ -70,17 +70,18 @@ void followInClosedForm(const HandModel& model, const HandSample& hand, const He
     proxy.X_WG = found.X_WG;
     proxy.clearance = -found.overlap;
     note(found, report);
-    noteHold(model, proxy, held.hold, pushes);
+    noteHold(model, target, proxy, held.hold, pushes);
 }
 
-void filterInClosedForm(const HandModel& model, const HandSample& hand, const ClosedFormHold& held,
-                        FilteredHold& filter, Proxy& proxy, ClosedFormMemory& memory, Report& report) noexcept {
+void filterInClosedForm(const HandModel& model, const HandSample& hand, const HeldTarget& target,
+                        const ClosedFormHold& held, FilteredHold& filter, Proxy& proxy, ClosedFormMemory& memory,
+                        Report& report) noexcept {
     if (hand.relocated) filter.has_last_proxy = false;
     const double alpha = 1.0 - std::exp(-2.0 * std::numbers::pi * model.contact.proxy_filter * kTickSeconds);
     if (held.hold.count > 0 && filter.has_last_proxy) {
-        const motion::Motion u = unconstrainedMotion(model, filter.X_WG_last, proxy.X_WG);
+        const motion::Motion u = target.metric.between(filter.X_WG_last, proxy.X_WG);
         const closed_form::ConstrainedPose found = memory.solver.solve(
-            filter.X_WG_last, moved(model, filter.X_WG_last, alpha * u), filter.hold, mostLooks(model, memory));
+            filter.X_WG_last, target.metric.moved(filter.X_WG_last, alpha * u), filter.hold, mostLooks(model, memory));
         proxy.X_WG = found.X_WG;
         proxy.clearance = -found.overlap;
         note(found, report);

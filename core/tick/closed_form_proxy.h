@@ -75,8 +75,9 @@ inline constexpr StageOf kClosedFormProxy{
      .spared = contactInstead}};
 
 /// The low-pass of proxy.h. The proxy goes towards the filtered pose under the contacts, so that it costs no overlap.
-void filterInClosedForm(const HandModel& model, const HandSample& hand, const ClosedFormHold& held,
-                        FilteredHold& filter, Proxy& proxy, ClosedFormMemory& memory, Report& report) noexcept;
+void filterInClosedForm(const HandModel& model, const HandSample& hand, const HeldTarget& target,
+                        const ClosedFormHold& held, FilteredHold& filter, Proxy& proxy, ClosedFormMemory& memory,
+                        Report& report) noexcept;
 inline constexpr StageOf kClosedFormFilter{
     filterInClosedForm,
     {.name = "closed-form filter",

@@ -13,33 +13,51 @@ void add(ObstaclePush& push, const Wrench& more, double pressure) noexcept {
     push.pressure += pressure;
 }
 
+/// What the coupling makes of a push: about the held part's origin.
+class CouplingPush {
+public:
+    CouplingPush(const HandModel& model, const HeldTarget& target, const Pose& X_WG) noexcept
+        : K_(model.contact.stiffness),
+          turn_(model.contact.rotational_stiffness / (target.metric.radius * target.metric.radius)),
+          centre_(target.metric.centre(X_WG)),
+          lever_(centre_ - X_WG.p) {}
+
+    /// Of K times `along` at `point`, and of `torsion` times K [m²].
+    Wrench at(const Vec3& point, const Vec3& along, const Vec3& torsion = Vec3::Zero()) const noexcept {
+        const Vec3 force = K_ * along;
+        return {force, turn_ * ((point - centre_).cross(along) + torsion) + lever_.cross(force)};
+    }
+
+private:
+    double K_, turn_;
+    Vec3 centre_, lever_;
+};
+
 }  // namespace
 
 void clearPushes(Pushes& pushes) noexcept { pushes.pushes.clear(); }
 
-void addPush(const HandModel& model, const Vec3& p_WG, const Vec3& point, const Vec3& along, double pressure,
-             ObstaclePush& of) noexcept {
-    const double turn = model.contact.rotational_stiffness / (model.metric_radius * model.metric_radius);
-    add(of, {model.contact.stiffness * along, turn * (point - p_WG).cross(along)}, pressure);
+void addPush(const HandModel& model, const HeldTarget& target, const Pose& X_WG, const Vec3& point, const Vec3& along,
+             double pressure, ObstaclePush& of) noexcept {
+    const CouplingPush push(model, target, X_WG);
+    add(of, push.at(point, along), pressure);
 }
 
-void notePushes(const HandModel& model, const Proxy& proxy, const motion::ConstrainedMotion& motion,
-                const motion::FrictionPatches& rubbing, Pushes& pushes) noexcept {
+void notePushes(const HandModel& model, const HeldTarget& target, const Proxy& proxy,
+                const motion::ConstrainedMotion& motion, const motion::FrictionPatches& rubbing,
+                Pushes& pushes) noexcept {
     clearPushes(pushes);
-    const double K = model.contact.stiffness;
-    const double turn = model.contact.rotational_stiffness / (model.metric_radius * model.metric_radius);
+    const CouplingPush push(model, target, proxy.X_WG);
     for (int i = 0; i < motion.active; ++i) {
         const motion::ActiveContact& held = motion.active_contacts[static_cast<std::size_t>(i)];
         const contact::ContactPoint& contact = proxy.manifold[held.contact];
-        const Vec3 push = held.push * contact.gradient.normalized();
-        addPush(model, proxy.X_WG.p, contact.position, push, K * held.push, pushes.pushes[contact.obstacle]);
+        add(pushes.pushes[contact.obstacle], push.at(contact.position, held.push * contact.gradient.normalized()),
+            model.contact.stiffness * held.push);
     }
     for (int p = 0; p < rubbing.count; ++p) {
         const motion::FrictionPatch& patch = rubbing.patch[static_cast<std::size_t>(p)];
-        const Vec3 impulse = motion::impulseAlong(patch);
         const Vec3 torsion = patch.radius * patch.impulse.z() * patch.normal;
-        add(pushes.pushes[patch.obstacle],
-            {K * impulse, turn * ((patch.centre - proxy.X_WG.p).cross(impulse) + torsion)}, 0.0);
+        add(pushes.pushes[patch.obstacle], push.at(patch.centre, motion::impulseAlong(patch), torsion), 0.0);
     }
 }
 

@@ -16,7 +16,8 @@ namespace passung::tick {
 ///   god objects   W = K (w - u) = -K (Σ λ_i a_i + Σ_p B_pᵀ x_p) is held by the multipliers of the proxy's last motion
 ///                 (constrained_motion.h, friction.h), so that of its contacts i and patches p
 ///                 F_o = K Σ (λ_i g_i + x_p along the patch),
-///                 T_o = K_φ/ρ² Σ (r_i × λ_i g_i + r_p × x_p + torsion).
+///                 T_o = K_φ/ρ² Σ (r_i × λ_i g_i + r_p × x_p + torsion) + r_c × F_o,   r from c, where the hand holds
+///                 it.
 /// What is more in W (dampers, vibration, what the linearisation misses) belongs to who presses:
 ///   W_o += p_o / Σ p · (W - Σ W_o).
 /// What is sent differs from W by two factors, of force and torque (output_stage.h), and so do the shares; what is left
@@ -27,12 +28,13 @@ namespace passung::tick {
 
 /// Forgets the pushes of the tick before. rt-safe.
 void clearPushes(Pushes& pushes) noexcept;
-/// Adds what a contact at `point` pushes the held part with, K times `along` [m]; p_WG: the part's origin. rt-safe.
-void addPush(const HandModel& model, const Vec3& p_WG, const Vec3& point, const Vec3& along, double pressure,
-             ObstaclePush& of) noexcept;
+/// Adds what a contact at `point` pushes the held part with, K times `along` [m]. rt-safe.
+void addPush(const HandModel& model, const HeldTarget& target, const Pose& X_WG, const Vec3& point, const Vec3& along,
+             double pressure, ObstaclePush& of) noexcept;
 /// In place of the pushes so far: those of the contacts and patches that hold `motion` of the proxy. rt-safe.
-void notePushes(const HandModel& model, const Proxy& proxy, const motion::ConstrainedMotion& motion,
-                const motion::FrictionPatches& rubbing, Pushes& pushes) noexcept;
+void notePushes(const HandModel& model, const HeldTarget& target, const Proxy& proxy,
+                const motion::ConstrainedMotion& motion, const motion::FrictionPatches& rubbing,
+                Pushes& pushes) noexcept;
 
 /// Stage, of scenes with obstacles: shares out what else is in F_H_W. After the wrench, before its delay.
 void sharePushes(const HandModel& model, const HandSample& hand, const HandWrench& wrench, Pushes& pushes) noexcept;

@@ -5,6 +5,12 @@
 
 namespace passung::tick {
 
+/// What a device shows of its part's weight: a force at a point of the handle (weight.h).
+struct Hanging {
+    Vec3 f_B = Vec3::Zero();  // device base axes [N]
+    Vec3 p_D = Vec3::Zero();  // [m]
+};
+
 /// What went through the handle: passivity.h.
 struct EnergyAccount {
     double taken_in = 0.0;  // by the controller [J]
@@ -15,10 +21,11 @@ struct EnergyAccount {
     Wrench sent;  // sum of what was sent since
     int ticks = 0;
     int weighed = 0;      // of them, with the part's weight in what was sent
+    Hanging hanging;      // whose it is
     double lifted = 0.0;  // liftEnergy of where the handle was believed to be then [J]
 };
 
-/// The share of one pair, an obstacle and the held part, in it: contact_energy.h.
+/// The share of one obstacle in it: contact_energy.h.
 struct PairAccount {
     double taken_in = 0.0;  // [J]
     double least = 0.0;     // of taken_in so far, ≤ 0
@@ -28,7 +35,8 @@ struct PairAccount {
 /// Owner: energy account.
 struct EnergyAccounts {
     EnergyAccount energy;
-    // Of each obstacle, and of what none pushes: last. Held: to which something was sent since the good sample before
+    // Of each part of the scene as an obstacle, and of what none pushes: last. Held: to which something was sent since
+    // the good sample before
     FewOfMany<PairAccount> pairs{1};
 };
 
@@ -42,7 +50,7 @@ struct ObstaclePush {
 /// the weight, the output delay delays them, no wrench clears them.
 struct Pushes {
     static constexpr bool kHandedOn = true;
-    FewOfMany<ObstaclePush> pushes{1};  // as EnergyAccounts::pairs; held: that push
+    FewOfMany<ObstaclePush> pushes{1};  // of each obstacle, and of none: last; held: that push
 };
 
 }  // namespace passung::tick

@@ -13,9 +13,9 @@ namespace {
 
 /// What the step `u` met and went more than `relieve` into, as contacts of the place where it began (cuts:
 /// god_object.h).
-void addCuts(const ProxyView& view, const Pose& X_met, const motion::Motion& u) noexcept {
-    const auto& [model, proxy, memory, report, obstacles] = view;
-    const motion::Surroundings here = surroundings(model, proxy);
+void addCuts(const MovingProxy& moving, const Pose& X_met, const motion::Motion& u) noexcept {
+    const auto& [model, proxy, memory, report, obstacles] = static_cast<const ProxyView&>(moving);
+    const motion::Surroundings here = surroundings(moving);
     const Pose back = proxy.X_WG * X_met.inverse();
     for (const contact::ContactPoint& met : memory.scratch) {
         if (!(met.phi < -model.margins.relieve)) continue;
@@ -63,13 +63,13 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
     double share = std::ldexp(1.0, -std::max(0, before - kCuts));
     for (int tried = before; tried <= kCuts + kHalvings; ++tried) {
         if (!step.look.open) {
-            const double length = longestPath(model, allowed.u);
+            const double length = longestPath(moving, allowed.u);
             if (length < kStill) return {.rubbing = allowed.rubbing, .at_rest = true};
             step.share = share * (length > bounds.known ? bounds.known / length : 1.0);
             step.u = step.share * allowed.u;
             step.halved = share < 1.0;
             step.rubbing = allowed.rubbing;
-            step.X_WT = moving.X_WT;
+            step.X_WT = moving.target.X_WT;
             const bool bends = model.hasNodeBudget() && way.bentBy(step.u) > model.margins.relieve;
             if (bends || !budget.allows()) {
                 proxy.tried = tried;
@@ -77,7 +77,7 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
             }
         }
         budget.begin();
-        if (!lookAround(moving, moved(model, here.X_WG, step.u), bounds.reach, bounds.search)) {
+        if (!lookAround(moving, moving.target.metric.moved(here.X_WG, step.u), bounds.reach, bounds.search)) {
             proxy.tried = tried;
             return {.rubbing = {}, .suspended = true};
         }
@@ -105,7 +105,7 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
 void sweepProxy(const HandModel& model, const HandSample& hand, const HeldTarget& target,
                 const ObstaclePoses& obstacles, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory, Pushes& pushes,
                 Report& report) noexcept {
-    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, target.X_WT, motion, pushes};
+    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, target, motion, pushes};
     if (!startProxy(moving)) {
         report.status |= kSuspended | kIterationLimit;
         noteLag(moving, false);
@@ -116,15 +116,15 @@ void sweepProxy(const HandModel& model, const HandSample& hand, const HeldTarget
     const Pose X_before = proxy.X_WG;
     double reach = nextReach(model, motion.last_motion);
     double repair = kRepair * model.finest_cell;
-    ProxyWay way(model);
+    ProxyWay way(model, target.metric);
     const double between = std::max(margins.relieve, overlap(proxy));
     LookBudget budget(target.work, report);
     const bool budgeted = model.hasNodeBudget();
     bool arrived = false, whole = false;  // whole: the last step was all that was allowed
     bool suspended = false;
     for (int sweep = 0; sweep <= kSweeps; ++sweep) {
-        const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, target.X_WT);
-        const double path = longestPath(model, wanted);
+        const motion::Motion wanted = target.metric.between(proxy.X_WG, target.X_WT);
+        const double path = longestPath(moving, wanted);
         const double before = overlap(proxy);
         const bool goes_on = proxy.step.look.open;  // with what an earlier tick began
         arrived = !goes_on && path < kStill && before <= margins.relieve;
@@ -142,10 +142,10 @@ void sweepProxy(const HandModel& model, const HandSample& hand, const HeldTarget
             if (arrived) break;
         }
 
-        motion::Surroundings around = surroundings(model, proxy);
+        motion::Surroundings around = surroundings(moving);
         around.sunk_out = -std::max(margins.keep, before - repair);
         const AllowedMotion allowed = allowedMotion(moving, wanted, around);
-        const double step = longestPath(model, allowed.u);
+        const double step = longestPath(moving, allowed.u);
         const double next_reach = std::clamp(kReachGrowth * std::min(step, path), reach, longest);
         const double search = std::max(next_reach, free && budgeted ? 2.0 * path : path);
         // Contacts that held may be left behind by now, so that the way ends only where those of now leave nothing.
@@ -189,7 +189,7 @@ void sweepProxy(const HandModel& model, const HandSample& hand, const HeldTarget
     else
         forgetCuts(proxy);
     noteLag(moving, arrived);
-    if (!suspended || way.length() > 0.0) motion.last_motion = unconstrainedMotion(model, X_before, proxy.X_WG).norm();
+    if (!suspended || way.length() > 0.0) motion.last_motion = target.metric.between(X_before, proxy.X_WG).norm();
 }
 
 }  // namespace passung::tick

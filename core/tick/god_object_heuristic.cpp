@@ -14,14 +14,15 @@ constexpr double kLeastLever = 0.1;     // per ρ: contacts that a rotation hard
 constexpr double kLargestTurn = 0.035;  // [rad] of one correction
 
 /// Direction of the correction: translation along the penalty force, rotation about its torque, shared by λ.
-motion::Motion correctionOf(const HandModel& model, const Proxy& proxy, double depth) noexcept {
-    const double rho = model.metric_radius;
+motion::Motion correctionOf(const motion::Metric& metric, const Proxy& proxy, double depth) noexcept {
+    const double rho = metric.radius;
+    const Vec3 centre = metric.centre(proxy.X_WG);
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
     for (const contact::ContactPoint& c : proxy.manifold) {
         if (!isInside(c)) continue;
         const Vec3 f = -c.phi * c.gradient;
         force += f;
-        torque += (c.position - proxy.X_WG.p).cross(f);
+        torque += (c.position - centre).cross(f);
     }
     const double F = force.norm(), T = torque.norm() / rho;
     motion::Motion u = motion::Motion::Zero();
@@ -32,7 +33,7 @@ motion::Motion correctionOf(const HandModel& model, const Proxy& proxy, double d
     const Vec3 axis = torque.normalized();
     double ph = 0.0, hh = 0.0;
     for (const contact::ContactPoint& c : proxy.manifold) {
-        const double lever = c.gradient.dot(axis.cross(c.position - proxy.X_WG.p));
+        const double lever = c.gradient.dot(axis.cross(c.position - centre));
         if (!isInside(c) || !(lever > kLeastLever * rho)) continue;
         ph += -c.phi * lever;
         hh += lever * lever;
@@ -48,23 +49,22 @@ double leftOf(const HandModel& model, double overlap) noexcept {
 }
 
 /// What is around the proxy, with no more asked of what is deeper than `left`.
-motion::Surroundings around(const HandModel& model, const Proxy& proxy, double left) noexcept {
-    motion::Surroundings result = surroundings(model, proxy);
+motion::Surroundings around(const MovingProxy& moving, double left) noexcept {
+    motion::Surroundings result = surroundings(moving);
     result.sunk_out = -left;
     return result;
 }
 
 /// Pushes the proxy out of the overlap that a step's linearisation missed, around a rim for instance: the least motion
 /// that obeys the contacts found there.
-void relieve(const ProxyView& view, double reach, double left, LookBudget& budget) noexcept {
-    const auto& [model, proxy, memory, report, obstacles] = view;
+void relieve(const MovingProxy& moving, double reach, double left, LookBudget& budget) noexcept {
+    const auto& [model, proxy, memory, report, obstacles] = static_cast<const ProxyView&>(moving);
     const double s = model.finest_cell;
     for (int i = 0; i < kReliefs && overlap(proxy) > std::max(model.margins.relieve, left); ++i) {
-        const motion::ConstrainedMotion out =
-            motion::constrainMotion(motion::Motion::Zero(), around(model, proxy, left));
-        if (longestPath(model, out.u) > kLongestStep * s || !budget.allows(2)) return;
+        const motion::ConstrainedMotion out = motion::constrainMotion(motion::Motion::Zero(), around(moving, left));
+        if (longestPath(moving, out.u) > kLongestStep * s || !budget.allows(2)) return;
         budget.begin();
-        queryAround(view, moved(model, proxy.X_WG, out.u), reach, reach);
+        queryAround(moving, moving.target.metric.moved(proxy.X_WG, out.u), reach, reach);
     }
 }
 
@@ -73,16 +73,16 @@ void relieve(const ProxyView& view, double reach, double left, LookBudget& budge
 void correctProxy(const HandModel& model, const HandSample& hand, const HeldTarget& target,
                   const ObstaclePoses& obstacles, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
                   Pushes& pushes, Report& report) noexcept {
-    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, target.X_WT, motion, pushes};
+    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, target, motion, pushes};
     if (!startProxy(moving)) return;
     const double left = leftOf(model, overlap(proxy));
     for (int i = 0; i < kCorrections && overlap(proxy) > std::max(model.margins.accept, left); ++i) {
         const Pose X_before = proxy.X_WG;
         const double depth = overlap(proxy);
-        motion::Motion u = correctionOf(model, proxy, depth - left);
+        motion::Motion u = correctionOf(target.metric, proxy, depth - left);
         bool better = false;
         for (int half = 0; half <= kHalvings && !better; ++half, u *= 0.5) {
-            surveyContacts(moving, moved(model, X_before, u));
+            surveyContacts(moving, moving.target.metric.moved(X_before, u));
             better = overlap(proxy) < depth;
         }
         if (!better) {
@@ -95,18 +95,18 @@ void correctProxy(const HandModel& model, const HandSample& hand, const HeldTarg
 
 void moveProxy(const HandModel& model, const HandSample& hand, const HeldTarget& target, const ObstaclePoses& obstacles,
                Proxy& proxy, ProxyMotion& motion, QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
-    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, target.X_WT, motion, pushes};
+    const MovingProxy moving{{model, proxy, memory, report, obstacles}, hand, target, motion, pushes};
     const double s = model.finest_cell;
     const Pose X_before = proxy.X_WG;
     const double left = leftOf(model, overlap(proxy));
     double reach = nextReach(model, motion.last_motion);
-    ProxyWay way(model);
+    ProxyWay way(model, target.metric);
     const double between = std::max(model.margins.relieve, overlap(proxy));
     LookBudget budget(target.work, report);
     bool arrived = false, suspended = false;
     for (int sub_step = 0; sub_step < kSubSteps; ++sub_step) {
-        const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, target.X_WT);
-        const double path = longestPath(model, wanted);
+        const motion::Motion wanted = target.metric.between(proxy.X_WG, target.X_WT);
+        const double path = longestPath(moving, wanted);
         arrived = path < kStill;
         if (arrived) break;
         suspended = !budget.allows();
@@ -126,9 +126,9 @@ void moveProxy(const HandModel& model, const HandSample& hand, const HeldTarget&
         if (arrived) break;
         // Step as far as the contacts are known, farther only where there is proven room.
         const double known = std::max(proxy.manifold_reach, proxy.clearance_bound);
-        const AllowedMotion allowed = allowedMotion(moving, wanted, around(model, proxy, left));
+        const AllowedMotion allowed = allowedMotion(moving, wanted, around(moving, left));
         motion::Motion u = allowed.u;
-        const double step_path = longestPath(model, u);
+        const double step_path = longestPath(moving, u);
         arrived = step_path < kStill;
         if (arrived) motion.rubbing = allowed.rubbing;  // at rest
         if (arrived) break;
@@ -144,7 +144,7 @@ void moveProxy(const HandModel& model, const HandSample& hand, const HeldTarget&
             suspended = half > tried && !budget.allows(2);  // one of them back
             if (suspended) break;
             budget.begin();
-            queryAround(moving, moved(model, X_here, u), next_reach, std::max(next_reach, path));
+            queryAround(moving, moving.target.metric.moved(X_here, u), next_reach, std::max(next_reach, path));
             relieve(moving, next_reach, left, budget);
             good = overlap(proxy) <= accepted;
             if (good && half == 0) motion.rubbing = allowed.rubbing;
@@ -153,7 +153,7 @@ void moveProxy(const HandModel& model, const HandSample& hand, const HeldTarget&
             whole = false;
         }
         if (good) {
-            way.add(unconstrainedMotion(model, X_here, proxy.X_WG));
+            way.add(target.metric.between(X_here, proxy.X_WG));
             const bool bent = way.bentBy(motion::Motion::Zero()) > model.margins.relieve;
             suspended = bent && !budget.allows(kLooksBetween);
             good = !bent || (!suspended && !cutsCorner(moving, X_before, proxy.X_WG, between));
@@ -168,7 +168,7 @@ void moveProxy(const HandModel& model, const HandSample& hand, const HeldTarget&
     noteLag(moving, arrived);
     if (!arrived) report.status |= kIterationLimit;
     if (suspended) report.status |= kSuspended;
-    motion.last_motion = unconstrainedMotion(model, X_before, proxy.X_WG).norm();
+    motion.last_motion = target.metric.between(X_before, proxy.X_WG).norm();
 }
 
 }  // namespace passung::tick

@@ -20,13 +20,6 @@ using Active = motion::ActiveSetOf<motion::kMostUnknowns>;
 
 auto blockOf(auto& motions, std::size_t hand) { return motions.template segment<6>(6 * static_cast<int>(hand)); }
 
-/// (n, (P - o) × n / ρ).
-motion::Motion leverOf(const HandModel& model, const HandState& state, const Vec3& point, const Vec3& normal) noexcept {
-    motion::Motion a;
-    a << normal, (point - state.X_WG.p).cross(normal) / model.metric_radius;
-    return a;
-}
-
 /// What one hand's search says of a contact.
 struct Found {
     std::uint32_t obstacle;
@@ -67,7 +60,7 @@ public:
         : models_(models), states_(states), memory_(memory) {
         for (std::size_t h = 0; h < models.size(); ++h) {
             if (!isBalanced(models[h], states[h])) continue;
-            blockOf(wanted_, h) = unconstrainedMotion(models[h], states[h].X_WG, X_WH[h]);
+            blockOf(wanted_, h) = states[h].metric.between(states[h].X_WG, X_WH[h]);
             way_ += reachOf(h, wanted_);
         }
         collect();
@@ -101,8 +94,7 @@ private:
     std::span<BalancedContact> contacts() noexcept { return std::span(memory_.contacts).first(memory_.count); }
 
     double reachOf(std::size_t hand, const Motions& u) const noexcept {
-        const motion::Motion own = blockOf(u, hand);
-        return own.head<3>().norm() + own.tail<3>().norm() / models_[hand].metric_radius * models_[hand].reach;
+        return states_[hand].metric.wayOf(blockOf(u, hand), models_[hand].reach);
     }
 
     std::size_t holderOf(std::size_t body) const noexcept {
@@ -132,11 +124,11 @@ private:
                    .other = holderOf(body)};
         Row& row = contact.row;
         row.a.setZero();
-        blockOf(row.a, hand) = leverOf(model, states_[hand], found.point, found.normal);
+        blockOf(row.a, hand) = states_[hand].metric.rowOf(states_[hand].X_WG, found.point, found.normal);
         double room = found.room;
         if (contact.other != BalancedContact::kNobody) {
             const std::size_t other = contact.other;
-            blockOf(row.a, other) = -leverOf(models_[other], states_[other], found.point, found.normal);
+            blockOf(row.a, other) = -states_[other].metric.rowOf(states_[other].X_WG, found.point, found.normal);
             // The obstacle may have had its turn since.
             const Pose moved = states_[other].X_WG * states_[hand].X_WO[found.obstacle].inverse();
             room -= found.normal.dot(moved * found.point - found.point);
@@ -179,7 +171,7 @@ private:
 /// K λ n at its point, on the part of `hand`.
 void push(const HandModel& model, HandState& state, std::size_t obstacle, const Vec3& point,
           const Vec3& along) noexcept {
-    addPush(model, state.X_WG.p, point, along, model.contact.stiffness * along.norm(), state.from_hands[obstacle]);
+    addPush(model, state, state.X_WG, point, along, model.contact.stiffness * along.norm(), state.from_hands[obstacle]);
     ++state.contacts_of_hands;
 }
 
@@ -231,7 +223,7 @@ Turns balanceHands(std::span<const HandModel> models, std::span<HandState> state
     }
     for (std::size_t h = 0; h < count; ++h)
         if (touched[h])
-            states[h].X_WT = moved(models[h], states[h].X_WG, balance.motionOf(h));
+            states[h].X_WT = states[h].metric.moved(states[h].X_WG, balance.motionOf(h));
         else
             forget(states[h]);
     for (std::size_t i = 1; i < count; ++i)

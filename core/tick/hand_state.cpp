@@ -53,16 +53,18 @@ HandState makeHandState(const HandModel& model) {
         state.X_WO_known.push_back(state.X_WO[i]);
         state.X_WO_begin.push_back(state.X_WO[i]);
     }
+    state.X_DG = model.registration.X_DH;
     state.X_WT = model.X_WG_start;
+    state.metric = motion::Metric{model.metric_radius};
     if (!model.moving.empty()) state.from_hands.resize(model.obstacles.size());
     state.engaged = model.start_gate.hold_ticks <= 0;
     state.X_WG = state.step.X_WT_followed = model.X_WG_start;
-    state.pairs.resize(model.obstacles.size() + 1);
-    state.pushes.resize(state.pairs.size());
+    state.pairs.resize(model.bodies.size() + 1);
     state.last_shares.resize(state.pairs.size());
+    state.pushes.resize(model.bodies.size());
     if (model.limits.delay_ticks > 0)
         state.push_line.assign(static_cast<std::size_t>(model.limits.delay_ticks) + 1,
-                               FewOfMany<Wrench>(state.pairs.size()));
+                               FewOfMany<Wrench>(state.pushes.size()));
     if (model.hasClosedForm())
         static_cast<ClosedFormMemory&>(state) = closedFormMemory(model);
     else if (model.hasSurfaces())

@@ -8,6 +8,7 @@
 #include "core/tick/energy_account.h"
 #include "core/tick/god_object.h"
 #include "core/tick/god_object_heuristic.h"
+#include "core/tick/grip.h"
 #include "core/tick/hand_model.h"
 #include "core/tick/input_guard.h"
 #include "core/tick/output_stage.h"
@@ -46,7 +47,7 @@ using AllStages = StageList<kInputGuard, kEnergyAccount, kStartGate, kWeight,   
 
 /// Everything of a hand that a tick carries to the next: the stages' own states. Sized by makeHandState; a tick never
 /// allocates.
-struct HandState : Parts<ObstaclePoses, HeldTarget, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion,
+struct HandState : Parts<ObstaclePoses, HeldTarget, Grip, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion,
                          ProxyFilter, ClosedFormHold, FilteredHold, ClosedFormMemory, SurfaceFollow, HandVelocity,
                          ToolMotion, Stretch, Hang, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
 

@@ -57,13 +57,13 @@ std::uint32_t takeReading(const HandModel& model, const DeviceReading& reading, 
 
 }  // namespace
 
-Pose registeredPose(const scene::Registration& registration, const Pose& X_BD) noexcept {
+Pose registeredPose(const scene::Registration& registration, const Pose& X_BD, const Pose& X_DH) noexcept {
     const Pose scaled{X_BD.q, registration.scale * X_BD.p};
-    return registration.X_WB * (scaled * registration.X_DH);
+    return registration.X_WB * (scaled * X_DH);
 }
 
-void guardInput(const HandModel& model, const Reading& device, const Proxy& proxy, InputGuard& guard, HandSample& hand,
-                Report& report) noexcept {
+void guardInput(const HandModel& model, const Reading& device, const Grip& grip, const Proxy& proxy, InputGuard& guard,
+                HandSample& hand, Report& report) noexcept {
     guard.periods_since_good += device.reading.periods;
     guard.periods_since_other += device.reading.periods;
     const std::uint32_t fault = takeReading(model, device.reading, guard, hand, report);
@@ -75,7 +75,7 @@ void guardInput(const HandModel& model, const Reading& device, const Proxy& prox
         hand.input_usable = guard.has_good_pose && guard.periods_since_good == 1 && !denied;
         report.status |= hand.input_usable ? kInputHeld : kInputRejected;
     }
-    hand.X_WH = guard.has_good_pose ? registeredPose(model.registration, guard.X_BD_good) : proxy.X_WG;
+    hand.X_WH = guard.has_good_pose ? registeredPose(model.registration, guard.X_BD_good, grip.X_DG) : proxy.X_WG;
 }
 
 void waitForStartPose(const HandModel& model, const HandSample& hand, Engagement& gate) noexcept {

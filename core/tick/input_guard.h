@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/tick/grip.h"
 #include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
@@ -43,8 +44,8 @@ struct Engagement {
 ///   sample of all, and the first after rejected ones, has nothing to be judged by and is taken at its word; but it is
 ///   not held against a jump: the output is zero until samples agree again. Limit case: a device that is slower than
 ///   the tick (fresh every other tick) is held on each tick between.
-void guardInput(const HandModel& model, const Reading& device, const Proxy& proxy, InputGuard& guard, HandSample& hand,
-                Report& report) noexcept;
+void guardInput(const HandModel& model, const Reading& device, const Grip& grip, const Proxy& proxy, InputGuard& guard,
+                HandSample& hand, Report& report) noexcept;
 inline constexpr StageOf kInputGuard{
     guardInput,
     {.name = "input guard",
@@ -70,7 +71,8 @@ inline constexpr StageOf kStartGate{
      .reason = [](const HandModel&) { return "start_gate is set: contact begins when the hand holds the start pose"; },
      .spared = [](const HandModel&) { return "start_gate is not set: contact is there from the first tick"; }}};
 
-/// Where the held part is when the handle is at `X_BD`: X_WH = X_WB · scale(X_BD) · X_DH. rt-safe.
-Pose registeredPose(const scene::Registration& registration, const Pose& X_BD) noexcept;
+/// Where the held part, or what else is at `X_DH` in the handle, is when the handle is at `X_BD`:
+/// X_WH = X_WB · scale(X_BD) · X_DH. rt-safe.
+Pose registeredPose(const scene::Registration& registration, const Pose& X_BD, const Pose& X_DH) noexcept;
 
 }  // namespace passung::tick

@@ -27,38 +27,40 @@ double factorRising(const Vec3& v, const Vec3& last, const Vec3& at_sample, doub
 }
 
 /// From the handle's origin to the held part's, world axes.
-Vec3 lever(const HandModel& model, const HandSample& hand) noexcept {
-    return hand.X_WH.q * (model.registration.X_DH.q.conjugate() * model.registration.X_DH.p);
+Vec3 lever(const HandSample& hand, const Grip& grip) noexcept {
+    return hand.X_WH.q * (grip.X_DG.q.conjugate() * grip.X_DG.p);
 }
 
 /// From the held part's origin and world axes to the handle's origin and device base axes.
-Wrench wrenchOnDevice(const HandModel& model, const HandSample& hand, const Wrench& F_H_W) noexcept {
+Wrench wrenchOnDevice(const HandModel& model, const HandSample& hand, const Grip& grip, const Wrench& F_H_W) noexcept {
     const Quat R_BW = model.registration.X_WB.q.conjugate();
-    const Vec3 p_DH_W = lever(model, hand);
+    const Vec3 p_DH_W = lever(hand, grip);
     return {R_BW * F_H_W.force, R_BW * (F_H_W.torque + p_DH_W.cross(F_H_W.force))};
 }
 
 /// The pairs' shares of what was sent, of whose force and torque the limits left so much.
-void splitSent(const HandModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
+void splitSent(const HandModel& model, const HandSample& hand, const Grip& grip, const Pushes& pushes, SentWrench& sent,
                double force_left, double torque_left) noexcept {
     Wrench rest = sent.last_sent;
     sent.last_shares.clear();
     for (const std::uint32_t i : pushes.pushes.held()) {
-        if (i + 1 == sent.last_shares.size()) continue;  // no obstacle's: what is left below
-        const Wrench push = wrenchOnDevice(model, hand, pushes.pushes[i].wrench);
-        sent.last_shares[i] = {force_left * push.force, torque_left * push.torque};
-        rest.force -= sent.last_shares[i].force;
-        rest.torque -= sent.last_shares[i].torque;
+        if (i + 1 == pushes.pushes.size()) continue;  // no obstacle's: what is left below
+        const Wrench push = wrenchOnDevice(model, hand, grip, pushes.pushes[i].wrench);
+        const Wrench share{force_left * push.force, torque_left * push.torque};
+        sent.last_shares[model.obstacles[i].body] = share;
+        rest.force -= share.force;
+        rest.torque -= share.torque;
     }
     sent.last_shares.back() = rest;  // that no obstacle pushes: the weight, and what has no push of its own
 }
 
 }  // namespace
 
-Wrench wrenchOnHeldPart(const HandModel& model, const HandSample& hand, const Wrench& F_D_B) noexcept {
+Wrench wrenchOnHeldPart(const HandModel& model, const HandSample& hand, const Grip& grip,
+                        const Wrench& F_D_B) noexcept {
     const Quat& R_WB = model.registration.X_WB.q;
     const Vec3 force = R_WB * F_D_B.force;
-    return {force, R_WB * F_D_B.torque - lever(model, hand).cross(force)};
+    return {force, R_WB * F_D_B.torque - lever(hand, grip).cross(force)};
 }
 
 void delayOutput(const HandModel& model, const HandSample& hand, DelayLine& line, Pushes& pushes,
@@ -84,10 +86,10 @@ void withholdWrench(const HandModel&, Pushes& pushes, HandWrench& wrench, Report
     if (isFinite(wrench.F_H_W)) wrench.F_H_W = Wrench{};
 }
 
-void limitOutput(const HandModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
-                 HandWrench& felt, CommandedWrench& command, Report& report) noexcept {
+void limitOutput(const HandModel& model, const HandSample& hand, const Grip& grip, const Pushes& pushes,
+                 SentWrench& sent, HandWrench& felt, CommandedWrench& command, Report& report) noexcept {
     const scene::OutputLimits& limits = model.limits;
-    Wrench wrench = wrenchOnDevice(model, hand, felt.F_H_W);
+    Wrench wrench = wrenchOnDevice(model, hand, grip, felt.F_H_W);
     if (!isFinite(wrench)) sent.latched = true;
     if (sent.latched) report.status |= kNonFiniteLatched;
     if (!hand.input_usable || sent.latched) {
@@ -114,11 +116,11 @@ void limitOutput(const HandModel& model, const HandSample& hand, const Pushes& p
     wrench = {force_rising * wrench.force, torque_rising * wrench.torque};
 
     command.F_D_B = wrench;
-    felt.F_H_W = wrenchOnHeldPart(model, hand, wrench);
+    felt.F_H_W = wrenchOnHeldPart(model, hand, grip, wrench);
     sent.last_sent = wrench;
     sent.weighed = model.hasWeight() && !pushes.pushes.back().wrench.force.isZero(0.0);
     if (hand.sample_periods > 0) sent.sent_at_sample = wrench;
-    splitSent(model, hand, pushes, sent, within * force_rising, turns ? within * torque_rising : 0.0);
+    splitSent(model, hand, grip, pushes, sent, within * force_rising, turns ? within * torque_rising : 0.0);
 }
 
 }  // namespace passung::tick

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/tick/energy_account.h"
+#include "core/tick/grip.h"
 #include "core/tick/hand_model.h"
 #include "core/tick/tick_frame.h"
 
@@ -22,12 +23,12 @@ struct SentWrench {
     Wrench sent_at_sample;             // F_D_B of the last tick with a new sample
     bool latched = false;              // a computed wrench was not finite
     bool weighed = false;              // the held part's weight is in last_sent
-    FewOfMany<Wrench> last_shares{1};  // each pair's share of last_sent
+    FewOfMany<Wrench> last_shares{1};  // of last_sent, as EnergyAccounts::pairs
 };
 
 /// What a wrench about the handle's origin in the device's base axes is on the held part: about its origin, world axes.
 /// rt-safe.
-Wrench wrenchOnHeldPart(const HandModel& model, const HandSample& hand, const Wrench& F_D_B) noexcept;
+Wrench wrenchOnHeldPart(const HandModel& model, const HandSample& hand, const Grip& grip, const Wrench& F_D_B) noexcept;
 
 /// Stage, only if the scene names a delay: the wrench takes effect `delay_ticks` later. What was computed without
 /// usable input takes effect as zero.
@@ -71,8 +72,8 @@ inline constexpr StageOf kNoWrench{
 ///   Invariants: finite; |force| ≤ max_force; |torque| ≤ max_torque. kForceLimited and kRateLimited are set if and only
 ///   if step 3's factor or one of step 4's changed the wrench; steps 1 and 2 are told by kInputRejected and
 ///   kNonFiniteLatched. That a device has no torque is a property of the device, not an event.
-void limitOutput(const HandModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
-                 HandWrench& felt, CommandedWrench& command, Report& report) noexcept;
+void limitOutput(const HandModel& model, const HandSample& hand, const Grip& grip, const Pushes& pushes,
+                 SentWrench& sent, HandWrench& felt, CommandedWrench& command, Report& report) noexcept;
 inline constexpr StageOf kOutputLimits{
     limitOutput,
     {.name = "output limits",

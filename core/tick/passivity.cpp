@@ -21,22 +21,23 @@ Pose believedPose(const Pose& X_BD, const Twist& ahead) noexcept {
 }
 
 /// Leaves the energy of the part's weight out of the account, and of that of what no obstacle pushes.
-void leaveOutWeight(const HandModel& model, const Pose& X_BD, EnergyAccounts& accounts) noexcept {
+void leaveOutWeight(const HandModel& model, const Grip& grip, const Pose& X_BD, EnergyAccounts& accounts) noexcept {
     EnergyAccount& account = accounts.energy;
-    const double lifted = liftEnergy(model, believedPose(X_BD, account.ahead));
+    const Pose X = believedPose(X_BD, account.ahead);
     if (account.has_sample) {
-        const double of_weight = (lifted - account.lifted) * account.weighed / account.ticks;
+        const double of_weight = (liftEnergy(account.hanging, X) - account.lifted) * account.weighed / account.ticks;
         account.taken_in -= of_weight;
         accounts.pairs.back().taken_in -= of_weight;
     }
-    account.lifted = lifted;
+    account.hanging = hangingOf(model, grip);
+    account.lifted = liftEnergy(account.hanging, X);
     account.weighed = 0;
 }
 
 }  // namespace
 
-void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSample& hand, const SentWrench& sent,
-                   EnergyAccounts& accounts, EnergyRecord& record) noexcept {
+void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSample& hand, const Grip& grip,
+                   const SentWrench& sent, EnergyAccounts& accounts, EnergyRecord& record) noexcept {
     EnergyAccount& account = accounts.energy;
     account.sent.force += sent.last_sent.force;
     account.sent.torque += sent.last_sent.torque;
@@ -51,18 +52,19 @@ void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSa
         account.V_BD = account.ahead = Twist{};
     } else if (hand.sample_periods > 0) {
         const Pose& X = guard.X_BD_good;
+        const bool weighs = model.hasWeight() || account.weighed > 0;  // or did, until it was let go
         if (account.has_sample) {
             const Vec3 dx = X.p - account.X_BD.p;
             const Vec3 dphi = rotationVector(X.q * account.X_BD.q.conjugate());
             const Vec3 moved = certainMotion(dx, model.limits.quantum, account.ahead.v);
             const Vec3 turned = certainMotion(dphi, model.limits.rotational_quantum, account.ahead.w);
             account.taken_in -= (account.sent.force.dot(moved) + account.sent.torque.dot(turned)) / account.ticks;
-            if (model.hasWeight()) leaveOutWeight(model, X, accounts);
+            if (weighs) leaveOutWeight(model, grip, X, accounts);
             bookPairs(accounts, moved, turned, account.ticks);
             const double elapsed = kTickSeconds * static_cast<double>(hand.sample_periods);
             account.V_BD = {dx / elapsed, dphi / elapsed};
-        } else if (model.hasWeight()) {
-            leaveOutWeight(model, X, accounts);
+        } else if (weighs) {
+            leaveOutWeight(model, grip, X, accounts);
         }
         account.X_BD = X;
         account.has_sample = true;
@@ -74,8 +76,8 @@ void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSa
     record.energy = account.taken_in;
 }
 
-void dampActivity(const HandModel& model, const HandSample& hand, const EnergyAccounts& accounts, HandWrench& wrench,
-                  Report& report) noexcept {
+void dampActivity(const HandModel& model, const HandSample& hand, const Grip& grip, const EnergyAccounts& accounts,
+                  HandWrench& wrench, Report& report) noexcept {
     const EnergyAccount& account = accounts.energy;
     // On a held tick nothing new is known, and what was asked back is on its way.
     if (!(account.taken_in < 0.0) || hand.sample_periods == 0) return;
@@ -84,7 +86,7 @@ void dampActivity(const HandModel& model, const HandSample& hand, const EnergyAc
     if (!(square > 0.0)) return;
     const double alpha = std::min(-account.taken_in / (kTickSeconds * square), model.effects.passivity_damping);
     const Wrench damper{-alpha * account.V_BD.v, -alpha * rho2 * account.V_BD.w};
-    const Wrench F_H_W = wrenchOnHeldPart(model, hand, damper);
+    const Wrench F_H_W = wrenchOnHeldPart(model, hand, grip, damper);
     wrench.F_H_W.force += F_H_W.force;
     wrench.F_H_W.torque += F_H_W.torque;
     report.status |= kPassivityActed;

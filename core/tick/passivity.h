@@ -37,8 +37,8 @@ namespace passung::tick {
 /// by what that gave out.
 ///
 /// Stage, of every scene: E and the handle's velocity, from the sample and what was sent.
-void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSample& hand, const SentWrench& sent,
-                   EnergyAccounts& accounts, EnergyRecord& record) noexcept;
+void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSample& hand, const Grip& grip,
+                   const SentWrench& sent, EnergyAccounts& accounts, EnergyRecord& record) noexcept;
 inline constexpr StageOf kEnergyAccount{
     observeEnergy,
     {.name = "energy account",
@@ -56,8 +56,8 @@ inline constexpr StageOf kEnergyAccount{
 ///   F += -α v,  T += -α ρ² ω,   α = min(-E / (τ (|v|² + ρ² |ω|²)), α_max)
 /// which takes -E back if the handle goes on as it moves; v, ω from sample to sample, τ the tick, ρ = metric_radius,
 /// α_max the scene's. Nothing at rest. After the wrench and its delay, before the output's limits, which may cut it.
-void dampActivity(const HandModel& model, const HandSample& hand, const EnergyAccounts& accounts, HandWrench& wrench,
-                  Report& report) noexcept;
+void dampActivity(const HandModel& model, const HandSample& hand, const Grip& grip, const EnergyAccounts& accounts,
+                  HandWrench& wrench, Report& report) noexcept;
 inline constexpr StageOf kPassivityController{
     dampActivity,
     {.name = "passivity controller",

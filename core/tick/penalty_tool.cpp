@@ -41,34 +41,34 @@ motion::Motion solved(Matrix6 A, motion::Motion b) noexcept {
 /// The equation of one tick: penalty_tool.h.
 class ToolBalance {
 public:
-    ToolBalance(const HandModel& model, const HandSample& hand, const Pose& X_WT, const Proxy& proxy,
+    ToolBalance(const HandModel& model, const HandSample& hand, const HeldTarget& target, const Proxy& proxy,
                 const ToolMotion& tool) noexcept
-        : model_(model), X_WT_(X_WT), X_before_(proxy.X_WG), law_(model.contact) {
+        : model_(model), metric_(target.metric), X_WT_(target.X_WT), X_before_(proxy.X_WG), law_(model.contact) {
         const scene::ContactSpec& c = model.contact;
         law_.stiffness = c.penalty_stiffness;
         if (c.coupling != scene::PenaltyCoupling::Virtual) return;
-        const double K = c.stiffness, turn = K * model.metric_radius * model.metric_radius;
+        const double K = c.stiffness, turn = K * metric_.radius * metric_.radius;
         damper_ = split(c.damping / K, c.rotational_damping / turn) / kTickSeconds;
         inertia_ = split(c.tool_mass / K, c.tool_inertia / turn) / (kTickSeconds * kTickSeconds);
         stiff_ += damper_ + inertia_;
         last_ = tool.last;
-        if (tool.has_last_hand) hand_ = unconstrainedMotion(model, tool.X_WH_last, hand.X_WH);
+        if (tool.has_last_hand) hand_ = metric_.between(tool.X_WH_last, hand.X_WH);
     }
 
     /// Takes up what is known around the tool.
     void update(const Proxy& proxy) noexcept {
-        const PenaltyLoad load = penaltyLoad(law_, proxy.manifold, proxy.X_WG.p);
+        const PenaltyLoad load = penaltyLoad(law_, proxy.manifold, metric_.centre(proxy.X_WG));
         scale_ = load.scale / model_.contact.stiffness;
         motion::Motion push;
-        push << load.wrench.force, load.wrench.torque / model_.metric_radius;
-        stretch = unconstrainedMotion(model_, proxy.X_WG, X_WT_);
+        push << load.wrench.force, load.wrench.torque / metric_.radius;
+        stretch = metric_.between(proxy.X_WG, X_WT_);
         const motion::Motion U = way(proxy);
         open = stretch + push / model_.contact.stiffness + damper_.cwiseProduct(hand_ - U) +
                inertia_.cwiseProduct(last_ - U);
     }
 
     /// The tool's motion in this tick so far.
-    motion::Motion way(const Proxy& proxy) const noexcept { return unconstrainedMotion(model_, X_before_, proxy.X_WG); }
+    motion::Motion way(const Proxy& proxy) const noexcept { return metric_.between(X_before_, proxy.X_WG); }
     const scene::ContactSpec& law() const noexcept { return law_; }
     double size() const noexcept { return open.cwiseQuotient(stiff_).norm(); }
     /// How far the tool may end from the hand where contacts push it away.
@@ -78,14 +78,14 @@ public:
     }
 
     /// The motion that solves the linearised equation.
-    motion::Motion step(const contact::ContactManifold& contacts, const Vec3& p_WG) const noexcept {
+    motion::Motion step(const contact::ContactManifold& contacts, const Pose& X_WG) const noexcept {
         motion::Motion u = motion::Motion::Zero();
         for (int round = 0; round < kRounds; ++round) {
             Matrix6 A = stiff_.asDiagonal();
             motion::Motion b = open;
             for (const contact::ContactPoint& contact : contacts) {
                 const double depth = -contact.phi;
-                const motion::Motion a = rowOf(contact, p_WG);
+                const motion::Motion a = metric_.rowOf(X_WG, contact.position, contact.gradient);
                 const double sigma =
                     scale_ * (law_.variant == scene::PenaltyVariant::AreaWeighted ? contact.area : 1.0);
                 if (depth > 0.0) b -= sigma * depth * a;
@@ -109,13 +109,9 @@ private:
         both << Vec3::Constant(translation), Vec3::Constant(rotation);
         return both;
     }
-    motion::Motion rowOf(const contact::ContactPoint& contact, const Vec3& p_WG) const noexcept {
-        motion::Motion a;
-        a << contact.gradient, (contact.position - p_WG).cross(contact.gradient) / model_.metric_radius;
-        return a;
-    }
 
     const HandModel& model_;
+    const motion::Metric& metric_;
     const Pose& X_WT_;  // where the spring draws the tool
     const Pose X_before_;
     scene::ContactSpec law_;  // of the contacts
@@ -161,14 +157,14 @@ double shareWithin(double longest, const motion::Motion& w, const motion::Motion
 }
 
 /// Moves by `u`, or as much of it as makes the balance's rest smaller; false, and the tool stays, if none does.
-bool makeStep(const ProxyView& view, ToolBalance& balance, const motion::Motion& u, double reach,
-              double search) noexcept {
+bool makeStep(const ProxyView& view, const motion::Metric& metric, ToolBalance& balance, const motion::Motion& u,
+              double reach, double search) noexcept {
     const auto& [model, proxy, memory, report, obstacles] = view;
     const Pose X_here = proxy.X_WG;
     const double before = balance.size();
     double share = 1.0;
     for (int half = 0; half <= kHalvings; ++half, share *= 0.5) {
-        lookAt(view, moved(model, X_here, share * u), reach, search);
+        lookAt(view, metric.moved(X_here, share * u), reach, search);
         balance.update(proxy);
         if (balance.size() < before) return true;
         report.status |= kStepRejected;
@@ -185,7 +181,7 @@ void settleTool(const HandModel& model, const HandSample& hand, const HeldTarget
                 Report& report) noexcept {
     const ProxyView view{model, proxy, memory, report, obstacles};
     startTool(view, hand, tool);
-    ToolBalance balance(model, hand, target.X_WT, proxy, tool);
+    ToolBalance balance(model, hand, target, proxy, tool);
     balance.update(proxy);
     const double longest = balance.longestStretch(), half_cell = kLongestStep * model.finest_cell;
     const double reach = nextReach(model, tool.last_way);
@@ -193,13 +189,14 @@ void settleTool(const HandModel& model, const HandSample& hand, const HeldTarget
     for (int i = 0; i < kToolSteps; ++i) {
         settled = balance.size() < kSettled;
         if (settled) break;
-        motion::Motion u = balance.step(proxy.manifold, proxy.X_WG.p);
-        const double path = longestPath(model, u), farthest = std::max(0.0, proxy.clearance) + half_cell;
+        motion::Motion u = balance.step(proxy.manifold, proxy.X_WG);
+        const double path = target.metric.wayOf(u, model.shell->reach()),
+                     farthest = std::max(0.0, proxy.clearance) + half_cell;
         if (path > farthest) u *= farthest / path;
         const double share = shareWithin(longest, balance.stretch, u);
         held_back = share < 1.0;
         report.iterations = static_cast<std::uint32_t>(i + 1);
-        if (!makeStep(view, balance, share * u, reach, path)) break;
+        if (!makeStep(view, target.metric, balance, share * u, reach, path)) break;
     }
     if (!settled && !(balance.size() < kSettled)) report.status |= kIterationLimit;
     const motion::Motion way = balance.way(proxy);

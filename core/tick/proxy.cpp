@@ -56,23 +56,6 @@ void note(int count, std::uint32_t& most) noexcept { most = std::max(most, stati
 
 }  // namespace
 
-Pose moved(const HandModel& model, const Pose& pose, const motion::Motion& u) noexcept {
-    Pose result{rotationFromVector(u.tail<3>() / model.metric_radius) * pose.q, pose.p + u.head<3>()};
-    result.q.normalize();
-    return result;
-}
-
-motion::Motion unconstrainedMotion(const HandModel& model, const Pose& X_WG, const Pose& X_WH) noexcept {
-    motion::Motion u;
-    u.head<3>() = X_WH.p - X_WG.p;
-    u.tail<3>() = model.metric_radius * rotationVector(X_WH.q * X_WG.q.conjugate());
-    return u;
-}
-
-double longestPath(const HandModel& model, const motion::Motion& u) noexcept {
-    return u.head<3>().norm() + u.tail<3>().norm() / model.metric_radius * model.shell->reach();
-}
-
 double overlap(const Proxy& proxy) noexcept { return std::max(0.0, -proxy.clearance); }
 
 bool isInside(const contact::ContactPoint& contact) noexcept { return contact.phi < 0.0 && !(contact.radius > 0.0); }
@@ -210,7 +193,7 @@ double nextReach(const HandModel& model, double last_motion) noexcept {
 
 bool arriveFreely(const MovingProxy& moving, double path, double reach, double accepted) noexcept {
     const Pose X_here = moving.proxy.X_WG;
-    queryAround(moving, moving.X_WT, reach, std::max(reach, 2.0 * path));
+    queryAround(moving, moving.target.X_WT, reach, std::max(reach, 2.0 * path));
     if (overlap(moving.proxy) <= accepted) {
         moving.motion.rubbing = {};  // free
         clearPushes(moving.pushes);
@@ -228,12 +211,17 @@ void noteFollowed(Proxy& proxy, const Pose& X_WT, double share) noexcept {
 
 void noteLag(const MovingProxy& moving, bool arrived) noexcept {
     Pose& followed = moving.proxy.step.X_WT_followed;
-    if (arrived) followed = moving.X_WT;
-    moving.proxy.lag = longestPath(moving.model, unconstrainedMotion(moving.model, followed, moving.X_WT));
+    if (arrived) followed = moving.target.X_WT;
+    moving.proxy.lag = longestPath(moving, moving.target.metric.between(followed, moving.target.X_WT));
 }
 
-motion::Surroundings surroundings(const HandModel& model, const Proxy& proxy) noexcept {
-    return {proxy.manifold, proxy.X_WG.p, model.metric_radius, -model.margins.keep};
+double longestPath(const MovingProxy& moving, const motion::Motion& u) noexcept {
+    return moving.target.metric.wayOf(u, moving.model.shell->reach());
+}
+
+motion::Surroundings surroundings(const MovingProxy& moving) noexcept {
+    const motion::Metric& metric = moving.target.metric;
+    return {moving.proxy.manifold, metric.centre(moving.proxy.X_WG), metric.radius, -moving.model.margins.keep};
 }
 
 AllowedMotion allowedMotion(const MovingProxy& moving, const motion::Motion& wanted,
@@ -249,7 +237,7 @@ AllowedMotion allowedMotion(const MovingProxy& moving, const motion::Motion& wan
         note(constrained.iterations, report.rows_taken);
         allowed.u = constrained.u;
         noteActive(constrained, moving.proxy, moving.motion.held);
-        notePushes(model, moving.proxy, constrained, allowed.rubbing, moving.pushes);
+        notePushes(model, moving.target, moving.proxy, constrained, allowed.rubbing, moving.pushes);
     } else {
         const motion::FrictionMotion rubbed =
             motion::constrainWithFriction(wanted, around, model.friction, moving.motion.rubbing, likely);
@@ -258,29 +246,30 @@ AllowedMotion allowedMotion(const MovingProxy& moving, const motion::Motion& wan
         note(rubbed.sweeps, report.friction_turns);
         allowed = {rubbed.motion.u, rubbed.patches};
         noteActive(rubbed.motion, moving.proxy, moving.motion.held);
-        notePushes(model, moving.proxy, rubbed.motion, rubbed.patches, moving.pushes);
+        notePushes(model, moving.target, moving.proxy, rubbed.motion, rubbed.patches, moving.pushes);
     }
     return allowed;
 }
 
 void followHand(const HandModel&, const HandSample& hand, Proxy& proxy) noexcept { proxy.X_WG = hand.X_WH; }
 
-void filterProxy(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles, ProxyFilter& filter,
-                 Proxy& proxy, QueryMemory& memory, Report& report) noexcept {
+void filterProxy(const HandModel& model, const HandSample& hand, const HeldTarget& target,
+                 const ObstaclePoses& obstacles, ProxyFilter& filter, Proxy& proxy, QueryMemory& memory,
+                 Report& report) noexcept {
     if (hand.relocated) filter.has_last_proxy = false;  // the proxy was set to the hand
     const double alpha = 1.0 - std::exp(-2.0 * std::numbers::pi * model.contact.proxy_filter * kTickSeconds);
     const bool in_contact = proxy.clearance < model.margins.keep;
     // A step that is still being looked at begins where the proxy is.
     if (in_contact && filter.has_last_proxy && !proxy.step.look.open) {
         const ProxyView view{model, proxy, memory, report, obstacles};
-        const motion::Motion u = unconstrainedMotion(model, filter.X_WG_last, proxy.X_WG);
+        const motion::Motion u = target.metric.between(filter.X_WG_last, proxy.X_WG);
         const double reach = proxy.manifold_reach;
         const double accepted = std::max(model.margins.accept, overlap(proxy));
-        const ProxyPlace target = placeOf(proxy);
-        if (!lookAround(view, moved(model, filter.X_WG_last, alpha * u), reach, reach))
+        const ProxyPlace unfiltered = placeOf(proxy);
+        if (!lookAround(view, target.metric.moved(filter.X_WG_last, alpha * u), reach, reach))
             proxy.step.look.open = false;
         else if (overlap(proxy) > accepted)
-            takeBack(view, target);
+            takeBack(view, unfiltered);
     }
     filter.X_WG_last = proxy.X_WG;
     filter.has_last_proxy = true;

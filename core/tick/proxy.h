@@ -20,15 +20,6 @@ inline constexpr int kHalvings = 4;
 inline constexpr std::uint32_t kFieldBudget = 12000;
 inline constexpr std::uint32_t kLooksBetween = 4;  // that the looks between (cutsCorner) take together, at most
 
-/// `pose` moved by `u`.
-Pose moved(const HandModel& model, const Pose& pose, const motion::Motion& u) noexcept;
-
-/// u = (x_H - x_G, ρ log(R_H R_Gᵀ)): what takes the proxy to the hand.
-motion::Motion unconstrainedMotion(const HandModel& model, const Pose& X_WG, const Pose& X_WH) noexcept;
-
-/// No point of the shell moves farther than this [m].
-double longestPath(const HandModel& model, const motion::Motion& u) noexcept;
-
 /// What the methods look at the proxy by.
 struct ProxyView {
     const HandModel& model;
@@ -41,7 +32,7 @@ struct ProxyView {
 /// What they move it by, towards the hand.
 struct MovingProxy : ProxyView {
     const HandSample& hand;
-    const Pose& X_WT;  // HeldTarget
+    const HeldTarget& target;
     ProxyMotion& motion;
     Pushes& pushes;
 };
@@ -131,7 +122,10 @@ void noteFollowed(Proxy& proxy, const Pose& X_WT, double share) noexcept;
 /// The tick's motion has ended; `arrived`: nothing is left of it. Notes what it lags behind.
 void noteLag(const MovingProxy& moving, bool arrived) noexcept;
 
-motion::Surroundings surroundings(const HandModel& model, const Proxy& proxy) noexcept;
+/// No point of the shell moves farther than this [m].
+double longestPath(const MovingProxy& moving, const motion::Motion& u) noexcept;
+
+motion::Surroundings surroundings(const MovingProxy& moving) noexcept;
 
 /// What the contacts, and friction, leave of a motion. Begins with the contacts that held the one before.
 struct AllowedMotion {
@@ -161,8 +155,9 @@ struct ProxyFilter {
 /// Low-pass (only if the scene names its corner f_c), while in contact:
 ///   G_k = G_{k-1} ⊕ α (G* ⊖ G_{k-1}),  α = 1 - exp(-2π f_c T); dropped for a tick where it would cost overlap, or
 /// more nodes than a budget leaves.
-void filterProxy(const HandModel& model, const HandSample& hand, const ObstaclePoses& obstacles, ProxyFilter& filter,
-                 Proxy& proxy, QueryMemory& memory, Report& report) noexcept;
+void filterProxy(const HandModel& model, const HandSample& hand, const HeldTarget& target,
+                 const ObstaclePoses& obstacles, ProxyFilter& filter, Proxy& proxy, QueryMemory& memory,
+                 Report& report) noexcept;
 inline constexpr StageOf kProxyFilter{
     filterProxy,
     {.name = "proxy filter",

@@ -8,6 +8,7 @@
 #include "core/contact/edge_search.h"
 #include "core/motion/active_set.h"
 #include "core/motion/friction.h"
+#include "core/motion/metric.h"
 #include "core/tick/energy_account.h"
 #include "core/tick/lookout.h"
 
@@ -28,6 +29,7 @@ struct ObstaclePoses {
 struct HeldTarget {
     static constexpr bool kOnlyRead = true;
     Pose X_WT;
+    motion::Metric metric;                // by which the way there is measured: where the hand holds the part
     FewOfMany<ObstaclePush> from_hands;   // of each obstacle, as Pushes; empty where no other hand is
     std::uint32_t contacts_of_hands = 0;  // that push so
     std::uint32_t work = 0;               // that the proxy's way may take in this tick, of what all hands have

@@ -5,7 +5,8 @@
 
 namespace passung::tick {
 
-ProxyWay::ProxyWay(const HandModel& model) noexcept : turn_scale_(model.shell->reach() / model.metric_radius) {}
+ProxyWay::ProxyWay(const HandModel& model, const motion::Metric& metric) noexcept
+    : turn_scale_((model.shell->reach() + metric.distance()) / metric.radius) {}
 
 motion::Motion ProxyWay::scaled(const motion::Motion& u) const noexcept {
     motion::Motion v = u;

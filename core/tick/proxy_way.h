@@ -21,7 +21,7 @@ inline constexpr int kPlaces = 7;
 /// one, up to a bend of kBent, if the line does not overlap at kPlaces places.
 class ProxyWay {
 public:
-    explicit ProxyWay(const HandModel& model) noexcept;
+    ProxyWay(const HandModel& model, const motion::Metric& metric) noexcept;
 
     void add(const motion::Motion& u) noexcept;
     double length() const noexcept { return length_; }

@@ -81,8 +81,14 @@ std::uint64_t SceneSequence::hash() const noexcept { return states_[current_].ha
 
 std::vector<PairAccount> SceneSequence::pairs() const {
     std::vector<PairAccount> all;
-    for (const TickState& state : states_)
-        for (const HandState& hand : state.hands) all.insert(all.end(), hand.pairs.begin(), hand.pairs.end());
+    for (std::size_t turn = 0; turn < turns_.size(); ++turn) {
+        const TickModel& model = *turns_[turn].model;
+        for (std::size_t hand = 0; hand < model.hands.size(); ++hand) {
+            const auto& pairs = states_[turn].hands[hand].pairs;
+            for (std::size_t i = 0; i < pairs.size(); ++i)
+                if (i != model.hands[hand].body) all.push_back(pairs[i]);
+        }
+    }
     return all;
 }
 

@@ -10,11 +10,12 @@ namespace passung::tick {
 namespace {
 
 /// In place of the pushes so far: K λ along each row's normal (contact_energy.h).
-void noteRows(const HandModel& model, const surface::SurfaceProxy& surface, Pushes& pushes) noexcept {
+void noteRows(const HandModel& model, const HeldTarget& target, const surface::SurfaceProxy& surface,
+              Pushes& pushes) noexcept {
     clearPushes(pushes);
     for (const surface::ContactRow& row : surface.rows()) {
         if (!(row.push > 0.0)) continue;
-        addPush(model, surface.pose().p, surface.pointOf(row), row.push * surface.normalOf(row),
+        addPush(model, target, surface.pose(), surface.pointOf(row), row.push * surface.normalOf(row),
                 model.contact.stiffness * row.push, pushes.pushes[obstacleOf(model, surface, row)]);
     }
 }
@@ -41,7 +42,8 @@ SurfaceFollow surfaceFollow(const HandModel& model) {
     }
     follow.surface.emplace(
         *model.held_surface, bodies,
-        surface::SurfaceSettings{.metric_radius = model.metric_radius, .gap = kSurfaceGap, .budget = kSurfaceBudget});
+        surface::SurfaceSettings{
+            .metric = motion::Metric{model.metric_radius}, .gap = kSurfaceGap, .budget = kSurfaceBudget});
     follow.surface->place(model.X_WG_start);
     follow.surface->prepare();
     return follow;
@@ -68,7 +70,7 @@ void followOnSurface(const HandModel& model, const HandSample& hand, const HeldT
     if (now.suspended) report.status |= kSuspended;
     if (now.meets) report.status |= kLedOut;
     if (now.stuck) report.status |= kIterationLimit;
-    noteRows(model, *follow.surface, pushes);
+    noteRows(model, target, *follow.surface, pushes);
 }
 
 void describeSurface(const HandModel&, const HeldTarget& target, const SurfaceFollow& follow,

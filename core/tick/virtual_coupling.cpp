@@ -36,15 +36,16 @@ void measureRates(Stretch& stretch, const HandSample& hand, const Vec3& e, const
 
 }  // namespace
 
-void renderCoupling(const HandModel& model, const HandSample& hand, const Proxy& proxy, const Hang& hang,
-                    Stretch& stretch, HandWrench& wrench) noexcept {
+void renderCoupling(const HandModel& model, const HandSample& hand, const Grip& grip, const Proxy& proxy,
+                    const Hang& hang, Stretch& stretch, HandWrench& wrench) noexcept {
     const Pose& rest = model.hasWeight() ? hang.X_WR : hand.X_WH;
-    const Vec3 e = proxy.X_WG.p - rest.p;
+    const Vec3 e = proxy.X_WG * grip.p_GC - rest * grip.p_GC;
     const Vec3 psi = rotationVector(proxy.X_WG.q * rest.q.conjugate());
     measureRates(stretch, hand, e, psi);
     const scene::ContactSpec& c = model.contact;
     wrench.F_H_W.force = springAndDamper(e, stretch.last_stretch_rate, c.stiffness, c.damping);
-    wrench.F_H_W.torque = springAndDamper(psi, stretch.last_twist_rate, c.rotational_stiffness, c.rotational_damping);
+    wrench.F_H_W.torque = springAndDamper(psi, stretch.last_twist_rate, c.rotational_stiffness, c.rotational_damping) +
+                          grip.leverOf(hand.X_WH.q).cross(wrench.F_H_W.force);
 }
 
 }  // namespace passung::tick

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/tick/grip.h"
 #include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
@@ -15,8 +16,9 @@ struct Stretch {
 };
 
 /// Stage: a spring and damper between the proxy and the hand (Colgate 1995); steps #6 of the god object.
-///   e = p_WG - p_WH,  ψ = log(R_WG R_WHᵀ)
-///   F = K e + B ė,   T = K_φ ψ + B_φ ψ̇.
+///   e = c_G - c_H,  ψ = log(R_WG R_WHᵀ)
+///   F = K e + B ė,   T = K_φ ψ + B_φ ψ̇,
+/// c the point of the part that the hand holds (grip.h), T about c_H: about the part's origin there it is r_c × F more.
 /// ė and ψ̇ are the changes from sample to sample over the time between them. On a held tick the last rates hold as a
 /// whole: the proxy's motion answers the hand's, so that the hand's part alone would leave -v_H, a brake in free
 /// motion. Springs go on with the present stretch (a proxy that lags may catch up meanwhile). After rejected ticks the
@@ -26,8 +28,8 @@ struct Stretch {
 /// that part is dropped. Limit cases: a proxy at rest gives ė = -v_H, the usual wall damper; e = 0 gives F = 0, also in
 /// the tick after contact. A part with weight (weight.h): from where it would rest in the air, R in place of H; it
 /// hangs there without a load of this stage.
-void renderCoupling(const HandModel& model, const HandSample& hand, const Proxy& proxy, const Hang& hang,
-                    Stretch& stretch, HandWrench& wrench) noexcept;
+void renderCoupling(const HandModel& model, const HandSample& hand, const Grip& grip, const Proxy& proxy,
+                    const Hang& hang, Stretch& stretch, HandWrench& wrench) noexcept;
 inline constexpr StageOf kVirtualCoupling{
     renderCoupling,
     {.name = "virtual coupling",

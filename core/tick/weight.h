@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/tick/energy_account.h"
+#include "core/tick/grip.h"
 #include "core/tick/hand_model.h"
 #include "core/tick/input_guard.h"
 #include "core/tick/proxy_state.h"
@@ -18,8 +19,9 @@ struct Hang {
 /// Why it is no force on the hand: one that is added to the coupling's wrench pulls also while the part lies on a
 /// table. It pulls at the part: the proxy goes to where its spring carries it, and lies where something else does.
 ///
-/// Symbols: m mass, g gravity, c the centre of mass in the part, H hand, G proxy, K, K_φ the coupling's stiffness.
-///   f = m g,   τ = (R_H c) × f                 the weight about the held part's origin
+/// Symbols: m mass, g gravity, c the centre of mass in the part, seen from the point x that the hand holds (grip.h), H
+/// hand, G proxy, K, K_φ the coupling's stiffness.
+///   f = m g,   τ = (R_H c) × f                 the weight about x
 ///   x_R = x_H + f/K,   R_R = exp(τ/K_φ) R_H    where the proxy rests in the air
 /// Derivation: a body without inertia is where ½K|x_H - x|² + ½K_φ|φ|² - f · x - τ · φ is least, φ from H; but for a
 /// constant that is ½K|x_R - x|² + ½K_φ|φ_R|², φ_R from R, the turns' products aside. So each method of contact goes to
@@ -48,13 +50,17 @@ struct Hang {
 /// What gravity does to the part at this orientation of it: about its origin, world axes. rt-safe.
 Wrench weightOf(const HandModel& model, const Quat& R_WG) noexcept;
 
-/// Work that lifting the part from the device's origin to where the handle is at `X_BD` takes, of what the device shows
-/// of its weight, up to a constant [J]. Of the handle's motion: the registration's scale does not enter. rt-safe.
-double liftEnergy(const HandModel& model, const Pose& X_BD) noexcept;
+/// What the device shows of the part's weight: a force, and where it acts. rt-safe.
+Hanging hangingOf(const HandModel& model, const Grip& grip) noexcept;
+
+/// Work that lifting the part from the device's origin to where the handle is at `X_BD` takes, of that, up to a
+/// constant [J]. Of the handle's motion: the registration's scale does not enter. rt-safe.
+double liftEnergy(const Hanging& hanging, const Pose& X_BD) noexcept;
 
 /// Stages. The first finds R. Before there is a good sample the hand is where the proxy is (input_guard.h), and so is
 /// R.
-void hangPart(const HandModel& model, const HandSample& hand, const InputGuard& guard, Hang& hang) noexcept;
+void hangPart(const HandModel& model, const HandSample& hand, const Grip& grip, const InputGuard& guard,
+              Hang& hang) noexcept;
 inline constexpr StageOf kWeight{
     hangPart,
     {.name = "weight",
@@ -74,8 +80,8 @@ inline constexpr StageOf kWeight{
 
 /// After all that is told of contacts. Its share of the wrench is noted as a push of no obstacle, and the record
 /// tells that it is there (kWeighed).
-void addWeight(const HandModel& model, const HandSample& hand, const Proxy& proxy, const Hang& hang, Pushes& pushes,
-               HandWrench& wrench, Report& report) noexcept;
+void addWeight(const HandModel& model, const HandSample& hand, const Grip& grip, const Proxy& proxy, const Hang& hang,
+               Pushes& pushes, HandWrench& wrench, Report& report) noexcept;
 inline constexpr StageOf kWeightInHand{
     addWeight,
     {.name = "weight in the hand",

@@ -121,7 +121,7 @@ public:
         const double clock = clockCost();
         for (const TickRecord& record : records_) {
             const auto out = tick::step(model_, state, tick::readingOf(record));
-            const motion::Motion wanted = tick::unconstrainedMotion(hand, own.X_WG, out.frame.X_WH);
+            const motion::Motion wanted = own.metric.between(own.X_WG, out.frame.X_WH);
             const motion::Motion before = std::exchange(wanted_before, wanted);
             if (out.frame.contacts == 0) continue;
             tick::TickFrame frame;

@@ -157,13 +157,15 @@ void runStages(Random& random) {
     for (int run = 0; run < 120; ++run) {
         tick::HandModel model = anyModel(random);
         tick::HandState state;
+        state.X_DG = model.registration.X_DH;
         const std::size_t pairs = 1 + random.below(3);
+        for (std::size_t k = 0; k + 1 < pairs; ++k) model.obstacles.push_back({.body = k});
         state.pairs.resize(pairs);
         state.pushes.resize(pairs);
         state.last_shares.resize(pairs);
         state.push_line.assign(scene::kMaxDelayTicks + 1, tick::FewOfMany<Wrench>(pairs));
         const Pose X{anyRotation(random, 1.0), anyVector(random, 0.3)};
-        model.X_WG_start = tick::registeredPose(model.registration, X);
+        model.X_WG_start = tick::registeredPose(model.registration, X, model.registration.X_DH);
         model.X_WG_start.p += anyVector(random, 0.01);
         state.X_WG = model.X_WG_start;
         Hand hand(random, X);

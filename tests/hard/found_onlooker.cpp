@@ -166,7 +166,7 @@ void FoundOnlooker::lookAtLag(const tick::HandModel& model, const tick::TickOutp
     ++lags_;
     if (!unlimited_)
         unlimited_.emplace(*model.held_surface, *model.still_surface,
-                           surface::SurfaceSettings{.metric_radius = model.metric_radius,
+                           surface::SurfaceSettings{.metric = motion::Metric{model.metric_radius},
                                                     .gap = tick::kSurfaceGap,
                                                     .budget = std::numeric_limits<int>::max() / 2});
     if (suspended_ == 1) {

@@ -12,8 +12,11 @@ namespace {
 
 constexpr double kRho = 22.4e-3;  // [m]
 
-Pose movedBy(const Pose& X, const motion::Motion& u) {
-    Pose there{rotationFromVector(u.tail<3>() / kRho) * X.q, X.p + u.head<3>()};
+/// Turned about the point of the part that is held, which goes by Δx.
+Pose movedBy(const Pose& X, const motion::Motion& u, const Vec3& grip) {
+    const Quat turn = rotationFromVector(u.tail<3>() / kRho);
+    const Vec3 held = X * grip;
+    Pose there{turn * X.q, held + u.head<3>() + turn * (X.p - held)};
     there.q.normalize();
     return there;
 }
@@ -22,7 +25,7 @@ Pose movedBy(const Pose& X, const motion::Motion& u) {
 std::optional<double> gapAfter(const SolidPair& pair, const Pose& X, const Contact& contact, const motion::Motion& u) {
     ContactSearch search(pair);
     PairContacts found;
-    search.find(movedBy(X, u), 2e-3, found);
+    search.find(movedBy(X, u, pair.metric.p_GC), 2e-3, found);
     std::optional<double> gap;
     double least = 0.05;  // of the line's parameter
     for (const Contact& other : found.all()) {
@@ -88,9 +91,11 @@ TEST_P(ContactsOfShapes, ChangeWithAMotionAsTheirRowsAndCurvaturesSay) {
     const auto held = solidOf(GetParam().held), obstacle = solidOf(GetParam().obstacle);
     Random random(2);
     const Pose X_WO{randomRotation(random, 3.0), randomVector(random, Vec3::Constant(0.01))};
-    const SolidPair pair{&*held, &*obstacle, X_WO, kRho};
+    const SolidPair at_origin{&*held, &*obstacle, X_WO, motion::Metric{kRho}},
+        at_a_grip{&*held, &*obstacle, X_WO, motion::Metric{kRho, Vec3(0.011, -0.007, 0.02)}};
     std::vector<double> first, second;
     for (int tried = 0; tried < 4000 && first.size() < 150; ++tried) {
+        const SolidPair& pair = tried % 2 == 0 ? at_origin : at_a_grip;
         const Pose X = X_WO * Pose{randomRotation(random, GetParam().tilt),
                                    GetParam().start + randomVector(random, GetParam().amplitude)};
         ContactSearch search(pair);
@@ -165,7 +170,7 @@ TEST_P(ContactsOfShapes, OverlapByAsMuchAsTheDeepestOfThemForASearchThatLooksAtF
     const auto held = solidOf(GetParam().held), obstacle = solidOf(GetParam().obstacle);
     Random random(6);
     const Pose X_WO{randomRotation(random, 3.0), randomVector(random, Vec3::Constant(0.01))};
-    const SolidPair pair{&*held, &*obstacle, X_WO, kRho};
+    const SolidPair pair{&*held, &*obstacle, X_WO, motion::Metric{kRho}};
     int overlaps = 0;
     for (const double step : {2e-5, 5e-4}) {
         ContactSearch search(pair);
@@ -193,7 +198,7 @@ TEST_P(ContactsOfShapes, OverlapByAsMuchAsTheDeepestOfThemForASearchThatLooksAtF
 TEST_P(ContactsOfShapes, AreTheSameForASearchThatRemembersWhatIsFar) {
     // Truth: invariant.
     const auto held = solidOf(GetParam().held), obstacle = solidOf(GetParam().obstacle);
-    const SolidPair pair{&*held, &*obstacle, {}, kRho};
+    const SolidPair pair{&*held, &*obstacle, {}, motion::Metric{kRho}};
     Random random(3);
     ContactSearch remembers(pair);
     Vec3 p = GetParam().start;
@@ -223,7 +228,7 @@ TEST(ContactsOfRims, AreTwoWhereARimCrossesTwoFacesBetweenTwoSamples) {
         deepest =
             std::min(deepest, valueOf(peg->lumps[0], X.inverse() * pointOf(plate->edges[1], 2e-5 * M_PI * i - M_PI)));
     PairContacts found;
-    ContactSearch({&*peg, &*plate, {}, kRho}).find(X, 1e-3, found);
+    ContactSearch({&*peg, &*plate, {}, motion::Metric{kRho}}).find(X, 1e-3, found);
     EXPECT_LT(deepest, -3e-6);
     EXPECT_NEAR(-overlapOf(found), deepest, 2e-8);
 }

@@ -83,7 +83,7 @@ class PoseOfShapes : public testing::TestWithParam<ShapePair> {};
 TEST_P(PoseOfShapes, NeverOverlapsByMoreThanATenthOfAMicrometre) {
     // Truth: closed form (shape::signedDistance at dense points of both surfaces, which the solver does not know).
     const auto held = solidOf(GetParam().held), obstacle = solidOf(GetParam().obstacle);
-    const SolidPair pair{&*held, &*obstacle, {}, kRho};
+    const SolidPair pair{&*held, &*obstacle, {}, motion::Metric{kRho}};
     Random random(4);
     const auto of_held = surfacePoints(GetParam().held, random),
                of_obstacle = surfacePoints(GetParam().obstacle, random);
@@ -115,7 +115,8 @@ struct PegInBore {
     PoseSolver solver;
     PoseMemory memory;
 
-    explicit PegInBore(double play) : bore(*solidOf(theBore(play))), pair{&peg, &bore, {}, kRho}, solver({&pair, 1}) {}
+    explicit PegInBore(double play)
+        : bore(*solidOf(theBore(play))), pair{&peg, &bore, {}, motion::Metric{kRho}}, solver({&pair, 1}) {}
     Vec3 force(const ConstrainedPose& found) const { return -kStiffness * found.pull.head<3>(); }
 };
 
@@ -123,7 +124,7 @@ TEST(BarInBore, PulledAsideAtItsMiddleRestsAlignedAtItsPlay) {
     // Truth: closed form: the axes are the play apart, and nothing tilts or lifts the bar.
     for (const double play : {100e-6, 50e-6, 10e-6}) {
         const auto bar = solidOf(shape::Cylinder{.02, .02}), bore = solidOf(theBore(play));
-        const SolidPair pair{&*bar, &*bore, {}, kRho};
+        const SolidPair pair{&*bar, &*bore, {}, motion::Metric{kRho}};
         PoseSolver solver({&pair, 1});
         PoseMemory memory;
         ConstrainedPose found{.X_WG = {Quat::Identity(), {0, 0, -0.012}}};
@@ -203,7 +204,7 @@ TEST(PegInBore, OneThatWandersAboutItsMouthConvergesAsNewtonsMethodDoes) {
 TEST(PoseSolver, ABallPressedOnABoxRestsOnItsFace) {
     // Truth: closed form.
     const auto ball = solidOf(shape::Sphere{.02}), box = solidOf(shape::Box{.03, .02, .01});
-    const SolidPair pair{&*ball, &*box, {}, kRho};
+    const SolidPair pair{&*ball, &*box, {}, motion::Metric{kRho}};
     PoseSolver solver({&pair, 1});
     PoseMemory memory;
     ConstrainedPose found{.X_WG = {Quat::Identity(), {0.001, 0.002, 0.02}}};
@@ -221,7 +222,7 @@ TEST(PoseSolver, CrossedEdgesPushAlongTheirCommonNormalOnly) {
     const Quat on_edge(Eigen::AngleAxisd(std::numbers::pi / 4, Vec3::UnitX()));  // edge along x
     const Quat quarter(Eigen::AngleAxisd(0.4 * std::numbers::pi, Vec3::UnitZ()));
     const double half = .01 * std::sqrt(2.0);
-    const SolidPair pair{&*held, &*obstacle, {on_edge, {0, 0, -half}}, kRho};
+    const SolidPair pair{&*held, &*obstacle, {on_edge, {0, 0, -half}}, motion::Metric{kRho}};
     PoseSolver solver({&pair, 1});
     PoseMemory memory;
     const Quat turned = quarter * on_edge;  // its lower edge crosses the obstacle's upper one

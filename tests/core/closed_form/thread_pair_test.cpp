@@ -47,7 +47,7 @@ struct BoltInNut {
           of_bolt(*solidOf(bolt)),
           of_nut(*solidOf(nut)),
           nut_is_held(holds_nut),
-          pair{holds_nut ? &of_nut : &of_bolt, holds_nut ? &of_bolt : &of_nut, {}, kRho},
+          pair{holds_nut ? &of_nut : &of_bolt, holds_nut ? &of_bolt : &of_nut, {}, motion::Metric{kRho}},
           solver({&pair, 1}) {}
 
     double lead() const { return bolt.pitch / kTurn; }
@@ -282,7 +282,7 @@ TEST(BoltInNut, PressedInOverlapsByTheDeepestOfAllItsContactsForASearchThatRemem
     constexpr double kPlay = 30e-6, kStart = -.0096, kPitch = .001;
     const auto bolt = solidOf(shape::ThreadBolt{.012 - 2.0 * kPlay, kPitch, .02, .0007});
     const auto nut = solidOf(shape::ThreadNut{.012, kPitch, .019, .010, .0006});
-    const SolidPair pair{&*bolt, &*nut, {}, kRho};
+    const SolidPair pair{&*bolt, &*nut, {}, motion::Metric{kRho}};
     ContactSearch search(pair);
     double deepest = 0.0;
     for (int tick = 0; tick < 400; ++tick) {

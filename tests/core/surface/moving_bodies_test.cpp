@@ -159,7 +159,7 @@ public:
             for (std::size_t k = 0; k < parts_.size(); ++k)
                 bodies.push_back(k == i ? SurfaceBody{&still_, {}} : SurfaceBody{&trees_[k], parts_[k].hand(0.0)});
             proxies_[i].emplace(trees_[i], bodies,
-                                SurfaceSettings{.metric_radius = .02, .budget = std::max(1, budget)});
+                                SurfaceSettings{.metric = motion::Metric{.02}, .budget = std::max(1, budget)});
             proxies_[i]->place(parts_[i].hand(0.0));
             proxies_[i]->prepare();
         }
@@ -331,7 +331,8 @@ TEST(MovingBodies, SeeTheSameFromEveryFrame) {
         const ClusterTree held(made.held), obstacle(made.obstacle);
         const Pose X_WB = test::turned(1.1, {.3, -.5, .8}, {.05, -.03, .02});
         const std::array<SurfaceBody, 1> there{SurfaceBody{&obstacle, X_WB}};
-        SurfaceProxy still(held, obstacle, {.metric_radius = .02}), elsewhere(held, there, {.metric_radius = .02});
+        SurfaceProxy still(held, obstacle, {.metric = motion::Metric{.02}}),
+            elsewhere(held, there, {.metric = motion::Metric{.02}});
         still.place(made.hand(0.0));
         elsewhere.place(X_WB * made.hand(0.0));
         still.prepare();
@@ -363,7 +364,8 @@ TEST(MovingBodies, AreFollowedAsOneFollowsTheHandAmongThoseAtRest) {
         return test::turned(.3 * t, {0, 0, 1}, {.01 * t, .02 * t, .001 - .01 * std::min(t, .3)});
     };
     const std::array<SurfaceBody, 1> bodies{SurfaceBody{&obstacle, X_WB(0.0)}};
-    SurfaceProxy still(held, obstacle, {.metric_radius = .02}), moving(held, bodies, {.metric_radius = .02});
+    SurfaceProxy still(held, obstacle, {.metric = motion::Metric{.02}}),
+        moving(held, bodies, {.metric = motion::Metric{.02}});
     for (SurfaceProxy* proxy : {&still, &moving}) {
         proxy->place(hand(0.0));
         proxy->prepare();
@@ -393,7 +395,7 @@ TEST(MovingBodies, ThatGiveWayAreFollowedAtTheirSpeed) {
     const ClusterTree held(block), obstacle(plate);
     for (const double speed : {.05, .3, 1.0, 2.0}) {  // [m/s]
         const std::array<SurfaceBody, 1> bodies{SurfaceBody{&obstacle, {}}};
-        SurfaceProxy proxy(held, bodies, {.metric_radius = .02});
+        SurfaceProxy proxy(held, bodies, {.metric = motion::Metric{.02}});
         proxy.place({Quat::Identity(), {0, 0, 1e-4}});
         proxy.prepare();
         const Pose X_WH{Quat::Identity(), {0, 0, -.1}};
@@ -417,7 +419,7 @@ TEST(MovingBodies, ComeNearAndGoWhileTheHandRests) {
     Random random(3);
     const Pose far{Quat::Identity(), {.03, .01, 0}};
     const std::array<SurfaceBody, 1> bodies{SurfaceBody{&tree, far}};
-    SurfaceProxy proxy(held, bodies, {.metric_radius = .02});
+    SurfaceProxy proxy(held, bodies, {.metric = motion::Metric{.02}});
     proxy.place({});
     proxy.prepare();
     int near = 0, too_high = 0, far_below = 0;
@@ -464,7 +466,7 @@ TEST(MovingBodies, GoneFarInATickAreFoundAnew) {
     Random random(5);
     for (const int budget : {300, 38000}) {
         const std::array<SurfaceBody, 1> bodies{SurfaceBody{&tree, {Quat::Identity(), {.03, 0, 0}}}};
-        SurfaceProxy proxy(held, bodies, {.metric_radius = .02, .budget = budget});
+        SurfaceProxy proxy(held, bodies, {.metric = motion::Metric{.02}, .budget = budget});
         proxy.place({});
         proxy.prepare();
         int pressed = 0;
@@ -494,7 +496,7 @@ TEST(MovingBodies, PutOverTheHeldPartAreLeft) {
     test::MeshPairTruth truth(cube, block);
     const std::array<SurfaceBody, 2> bodies{SurfaceBody{&obstacle, {Quat::Identity(), {.1, 0, 0}}},
                                             SurfaceBody{&obstacle, {Quat::Identity(), {-.1, 0, 0}}}};
-    SurfaceProxy proxy(held, bodies, {.metric_radius = .02});
+    SurfaceProxy proxy(held, bodies, {.metric = motion::Metric{.02}});
     proxy.place({});
     proxy.prepare();
     proxy.advance({});
@@ -518,7 +520,7 @@ TEST(MovingBodies, PutOverTheHeldPartAndMovedOnAreLeftToo) {
     test::MeshPairTruth truth(cube, block);
     for (const Vec3& way : {Vec3(0, 0, 2e-4), Vec3(3e-4, 1e-4, 0)}) {
         const std::array<SurfaceBody, 1> bodies{SurfaceBody{&obstacle, {Quat::Identity(), {.1, 0, 0}}}};
-        SurfaceProxy proxy(held, bodies, {.metric_radius = .02});
+        SurfaceProxy proxy(held, bodies, {.metric = motion::Metric{.02}});
         proxy.place({});
         proxy.prepare();
         proxy.placeBody(0, {Quat::Identity(), {-.001, 0, -.005}});
@@ -546,7 +548,7 @@ TEST(MovingBodies, OfWhichManyAreNearAreKeptApartFromAllOfThem) {
         const int column = i % 5 - 2, row = i / 5 % 4, layer = i / 20;
         bodies.push_back({&tree, {Quat::Identity(), {.008 * column, .008 * row - .012, .008 * layer}}});
     }
-    SurfaceProxy proxy(held, bodies, {.metric_radius = .02});
+    SurfaceProxy proxy(held, bodies, {.metric = motion::Metric{.02}});
     test::MeshPairTruth truth(block, cube);
     Random random(21);
     const Pose start{Quat::Identity(), {.004, .0, -.004}};
@@ -594,7 +596,7 @@ TEST(MovingBodies, AllocateNothingAndAreTheSameEveryTime) {
     const std::array<SurfaceBody, 2> bodies{SurfaceBody{&around, {}}, SurfaceBody{&tree, second(0.0)}};
     std::array<std::optional<SurfaceProxy>, 2> proxies;
     for (auto& proxy : proxies) {
-        proxy.emplace(held, bodies, SurfaceSettings{.metric_radius = .02});
+        proxy.emplace(held, bodies, SurfaceSettings{.metric = motion::Metric{.02}});
         proxy->place(first(0.0));
         proxy->prepare();
     }
@@ -622,7 +624,8 @@ TEST(MovingBodies, OutOfReachCostNextToNothing) {
     const ClusterTree held(made.held), obstacle(made.obstacle), ring(torus());
     std::vector<SurfaceBody> bodies{{&obstacle, {}}};
     for (int i = 0; i < 7; ++i) bodies.push_back({&ring, {Quat::Identity(), {.2 + .02 * i, 0, 0}}});
-    SurfaceProxy alone(held, obstacle, {.metric_radius = .02}), among(held, bodies, {.metric_radius = .02});
+    SurfaceProxy alone(held, obstacle, {.metric = motion::Metric{.02}}),
+        among(held, bodies, {.metric = motion::Metric{.02}});
     for (SurfaceProxy* proxy : {&alone, &among}) {
         proxy->place(made.hand(0.0));
         proxy->prepare();

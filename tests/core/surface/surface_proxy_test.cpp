@@ -55,7 +55,7 @@ int crossingsBetween(test::MeshPairTruth& truth, Pose from, std::span<const Pose
 
 Followed follow(const test::SurfaceCase& scene) {
     const ClusterTree held(scene.held), obstacle(scene.obstacle);
-    SurfaceProxy proxy(held, obstacle, {.metric_radius = 0.02});
+    SurfaceProxy proxy(held, obstacle, {.metric = motion::Metric{0.02}});
     test::MeshPairTruth truth(scene.held, scene.obstacle);
     proxy.place(scene.hand(0.0));
     proxy.prepare();
@@ -133,7 +133,7 @@ TEST(SurfaceProxy, GoesOnWhereFacesOnlyPassEachOther) {
     // the proxy where it was for 30 to 255 ticks, although no way led through them.
     for (const test::SurfaceCase& scene : {test::ringInRing(605), test::scanOnScan(.03, 60, 510)}) {
         const ClusterTree held(scene.held), obstacle(scene.obstacle);
-        SurfaceProxy proxy(held, obstacle, {.metric_radius = std::sqrt(1.0 / 2000.0)});
+        SurfaceProxy proxy(held, obstacle, {.metric = motion::Metric{std::sqrt(1.0 / 2000.0)}});
         proxy.place(scene.hand(0.0));
         proxy.prepare();
         int stuck = 0;
@@ -146,7 +146,8 @@ TEST(SurfaceProxy, AllocatesNothingAndIsTheSameEveryTime) {
     // Truth: invariant.
     const test::SurfaceCase scene = test::dovetail();
     const ClusterTree held(scene.held), obstacle(scene.obstacle);
-    SurfaceProxy first(held, obstacle, {.metric_radius = 0.02}), second(held, obstacle, {.metric_radius = 0.02});
+    SurfaceProxy first(held, obstacle, {.metric = motion::Metric{0.02}}),
+        second(held, obstacle, {.metric = motion::Metric{0.02}});
     for (SurfaceProxy* proxy : {&first, &second}) {
         proxy->place(scene.hand(0.0));
         proxy->prepare();
@@ -180,7 +181,7 @@ TEST(SurfaceProxy, LeavesNoUpperHalvesOfRegistersInUse) {
     // Truth: the processor's own account of its state. In use, they make all other code of the thread slower.
     const test::SurfaceCase scene = test::blockOnFin();
     const ClusterTree held(scene.held), obstacle(scene.obstacle);
-    SurfaceProxy proxy(held, obstacle, {.metric_radius = 0.02});
+    SurfaceProxy proxy(held, obstacle, {.metric = motion::Metric{0.02}});
     proxy.place(scene.hand(0.0));
     proxy.prepare();
     if (!upperHalvesInUse()) GTEST_SKIP() << "the processor does not tell";
@@ -202,7 +203,7 @@ TEST(SurfaceProxy, ComesOutOfWhatEnclosesItWhereItIsPlacedInATick) {
     constexpr int kBudget = 2000;  // a part of what the scan's faces take
     for (const auto* around : {&block, &ball.obstacle}) {
         const ClusterTree held(cube), obstacle(*around);
-        SurfaceProxy proxy(held, obstacle, {.metric_radius = 0.02, .budget = kBudget});
+        SurfaceProxy proxy(held, obstacle, {.metric = motion::Metric{0.02}, .budget = kBudget});
         test::MeshPairTruth truth(cube, *around);
         const Pose inside{Quat::Identity(), Vec3(.001, 0, .003)};
         proxy.place({Quat::Identity(), Vec3(0, 0, .1)});
@@ -238,7 +239,7 @@ TEST(SurfaceProxy, AnyBudgetKeepsItOut) {
     const ClusterTree held(scene.held), obstacle(scene.obstacle);
     test::MeshPairTruth truth(scene.held, scene.obstacle);
     for (const int budget : {100, 1000}) {
-        SurfaceProxy proxy(held, obstacle, {.metric_radius = 0.02, .budget = budget});
+        SurfaceProxy proxy(held, obstacle, {.metric = motion::Metric{0.02}, .budget = budget});
         proxy.place(scene.hand(0.0));
         proxy.prepare();
         int suspended = 0;
@@ -248,7 +249,7 @@ TEST(SurfaceProxy, AnyBudgetKeepsItOut) {
         }
         EXPECT_GT(suspended, 0);
         for (int tick = 0; tick < 3000; ++tick) proxy.advance(scene.hand(1.0));
-        SurfaceProxy unlimited(held, obstacle, {.metric_radius = 0.02, .budget = 1'000'000});
+        SurfaceProxy unlimited(held, obstacle, {.metric = motion::Metric{0.02}, .budget = 1'000'000});
         unlimited.place(proxy.pose());
         unlimited.prepare();
         const Vec3 rests = proxy.pose().p;

@@ -375,7 +375,7 @@ TEST(InputGuard, PutsTheHeldPartWhereTheRegistrationSays) {
         const Pose X_WB{rotationFromVector(any()), any()}, X_BD{rotationFromVector(any()), any()},
             X_DH{rotationFromVector(any()), any()};
         const double scale = random.uniform(0.2, 5.0);
-        const Pose X_WH = tick::registeredPose({X_WB, scale, X_DH}, X_BD);
+        const Pose X_WH = tick::registeredPose({X_WB, scale, X_DH}, X_BD, X_DH);
         const Vec3 point = any();  // of the held part
         const Vec3 expected = X_WB.p + X_WB.q * (scale * X_BD.p + X_BD.q * (X_DH.p + X_DH.q * point));
         EXPECT_NEAR((X_WH * point - expected).norm(), 0.0, 1e-12);

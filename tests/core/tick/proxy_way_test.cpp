@@ -25,7 +25,7 @@ motion::Motion shift(double x, double y) {
 TEST(ProxyWay, IsBentByTheHeightOfItsJointOverTheLine) {
     // Truth: closed form. Two legs a and b at a right angle: the joint is a b / sqrt(a² + b²) off the line.
     const test::Bench bench(twoBoxes());
-    ProxyWay way(bench.model());
+    ProxyWay way(bench.model(), motion::Metric{bench.model().metric_radius});
     EXPECT_EQ(way.bentBy(shift(1e-3, 0)), 0.0);
     way.add(shift(3e-4, 0));
     EXPECT_NEAR(way.bentBy(shift(1e-3, 0)), 0.0, 1e-18);
@@ -47,7 +47,7 @@ TEST(ProxyWay, LeavesNoPlaceOfTheLineFartherFromItThanItsBend) {
         return u;
     };
     for (int run = 0; run < 50; ++run) {
-        ProxyWay way(bench.model());
+        ProxyWay way(bench.model(), motion::Metric{bench.model().metric_radius});
         std::vector<motion::Motion> joints{motion::Motion::Zero()};
         const int legs = 2 + run % 4;
         double bent = 0.0;
