@@ -45,6 +45,8 @@ struct DeviceReading {
     double hand_energy_J = std::numeric_limits<double>::quiet_NaN();
 };
 
+inline constexpr std::int32_t kNoPart = -1, kPartNotTold = -2;
+
 /// One tick: its exact inputs, from which a replay reproduces everything else, and its outputs.
 /// Trivially copyable and of fixed size: it travels through a lock-free ring.
 struct TickRecord {
@@ -77,6 +79,8 @@ struct TickRecord {
     // An output: no point of the held part at X_WG is nearer to an obstacle than this, ≥ 0 [m]. NaN: the contact's
     // geometry proves none, as sampled points and fields.
     float proxy_gap_m = std::numeric_limits<float>::quiet_NaN();
+    // An output: which part the hand holds, in the order of the scene; kNoPart, or kPartNotTold of a recording without.
+    std::int32_t held = kPartNotTold;
     // measured, never compared by a replay
     std::int64_t duration_ns = 0;   // of the tick's computation, by the wall clock
     std::int64_t processor_ns = 0;  // of it, that the loop's thread spent on a processor

@@ -38,6 +38,7 @@ struct LineView {
     Vec3 p_WS;
     Curve line;   // in S
     Vec3 origin;  // where the held part is held, in S
+    Vec3 axis;    // of the held part's metric, world
     double sign;  // of what a motion of the held part does to the gap: 1 if the line moves, -1 if the lump does
     Quat line_q;  // of the line's part, in S
 };
@@ -49,12 +50,25 @@ const Curve& lineOf(const SolidPair& pair, const TouchName& name) noexcept {
 
 LineView viewOf(const SolidPair& pair, const Pose& X_WH, const TouchName& name) noexcept {
     const Curve& line = lineOf(pair, name);
+    const Vec3 axis = pair.metric.at(X_WH).axis;
     if (name.of_held) {
         const Pose X_OH = pair.X_WO.inverse() * X_WH;
-        return {pair.X_WO.q.toRotationMatrix(), pair.X_WO.p, moved(X_OH, line), pair.metric.centre(X_OH), 1.0, X_OH.q};
+        return {.R_WS = pair.X_WO.q.toRotationMatrix(),
+                .p_WS = pair.X_WO.p,
+                .line = moved(X_OH, line),
+                .origin = pair.metric.centre(X_OH),
+                .axis = axis,
+                .sign = 1.0,
+                .line_q = X_OH.q};
     }
     const Pose X_HO = X_WH.inverse() * pair.X_WO;
-    return {X_WH.q.toRotationMatrix(), X_WH.p, moved(X_HO, line), pair.metric.p_GC, -1.0, X_HO.q};
+    return {.R_WS = X_WH.q.toRotationMatrix(),
+            .p_WS = X_WH.p,
+            .line = moved(X_HO, line),
+            .origin = pair.metric.p_GC,
+            .axis = axis,
+            .sign = -1.0,
+            .line_q = X_HO.q};
 }
 
 const Lump& lumpOf(const SolidPair& pair, const TouchName& name) noexcept {
@@ -68,10 +82,15 @@ motion::Motion slopeBy(const LineView& view, const Vec3& lever, const Vec3& grad
     return a;
 }
 
+/// Without its centre: levers are about `origin`.
+motion::PlacedMetric metricOf(const LineView& view, const motion::Metric& metric) noexcept {
+    return {.radius = metric.radius, .centre = Vec3::Zero(), .across = metric.across, .axis = view.axis};
+}
+
 /// To world axes and lengths.
-motion::Motion inWorld(const LineView& view, double rho, const motion::Motion& m) noexcept {
+motion::Motion inWorld(const LineView& view, const motion::Metric& metric, const motion::Motion& m) noexcept {
     motion::Motion w;
-    w << view.R_WS * m.head<3>(), view.R_WS * m.tail<3>() / rho;
+    w << view.R_WS * m.head<3>(), metricOf(view, metric).perTurn(view.R_WS * m.tail<3>());
     return w;
 }
 
@@ -135,7 +154,7 @@ Contact contactOf(const SolidPair& pair, const LineView& view, const TouchName& 
     }
     contact.point = view.R_WS * p + view.p_WS;
     contact.normal = view.R_WS * (view.sign * gradient);
-    contact.a = inWorld(view, pair.metric.radius, slopeBy(view, p - view.origin, gradient));
+    contact.a = inWorld(view, pair.metric, slopeBy(view, p - view.origin, gradient));
     return contact;
 }
 
@@ -229,6 +248,7 @@ struct PlacedPair {
           X_WH(X_WHeld),
           X_OH(of.X_WO.inverse() * X_WHeld),
           X_HO(X_WHeld.inverse() * of.X_WO),
+          axis(of.metric.at(X_WHeld).axis),
           R_WH(X_WHeld.q.toRotationMatrix()),
           R_WO(of.X_WO.q.toRotationMatrix()) {}
 
@@ -238,14 +258,15 @@ struct PlacedPair {
         if (&line == seen) return last;
         seen = &line;
         if (name.of_held)
-            last = {R_WO, pair.X_WO.p, moved(X_OH, line), X_OH.p, 1.0, X_OH.q};
+            last = {R_WO, pair.X_WO.p, moved(X_OH, line), pair.metric.centre(X_OH), axis, 1.0, X_OH.q};
         else
-            last = {R_WH, X_WH.p, moved(X_HO, line), Vec3::Zero(), -1.0, X_HO.q};
+            last = {R_WH, X_WH.p, moved(X_HO, line), pair.metric.p_GC, axis, -1.0, X_HO.q};
         return last;
     }
 
     const SolidPair& pair;
     Pose X_WH, X_OH, X_HO;
+    Vec3 axis;
     Mat3 R_WH, R_WO;
 
 private:
@@ -422,7 +443,8 @@ MotionMatrix curvatureOf(const SolidPair& pair, const Pose& X_WH, const Contact&
     const MotionMatrix H = curvatureInS(view, lumpOf(pair, contact.name).faces, contact.touch, slides);
     MotionMatrix T = MotionMatrix::Zero();
     T.topLeftCorner<3, 3>() = view.R_WS;
-    T.bottomRightCorner<3, 3>() = T.topLeftCorner<3, 3>() / pair.metric.radius;
+    const motion::PlacedMetric metric = metricOf(view, pair.metric);
+    for (int axis = 0; axis < 3; ++axis) T.block<3, 1>(3, 3 + axis) = metric.perTurn(view.R_WS.col(axis));
     return T * H * T.transpose();
 }
 

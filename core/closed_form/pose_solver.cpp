@@ -275,7 +275,8 @@ motion::Motion PoseSolver::offRidge(const motion::Motion& way, const PoseMemory&
     return (v.dot(way) < 0.0 ? -kOffRidge : kOffRidge) * v.normalized();
 }
 
-ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most) noexcept {
+ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most,
+                                  const motion::TwoSprings* two_springs) noexcept {
     ConstrainedPose result{.X_WG = X_WG};
     way_.clear();
     Pose X = X_WG;
@@ -283,7 +284,8 @@ ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory
     double astray = 0.0;                                    // of the motions since the last pose that counts
     bool left = false;                                      // a ridge
     for (int i = 0;; ++i) {
-        const motion::Motion wanted = metric_.between(X, X_WH);
+        const motion::Motion wanted =
+            two_springs != nullptr ? two_springs->wantedAt(metric_, X) : metric_.between(X, X_WH);
         find(X, reachFor(wanted));
         if (i == 0) most = std::min(most, most_looks_);
         if (i == 0) allowed_ = std::max(0.0, overlap_ - kRepair);

@@ -87,8 +87,10 @@ public:
     /// without one all are near.
     explicit PoseSolver(std::span<const SolidPair> pairs, geometry::NearList near = {});
 
-    /// In at most `most` looks, and no more than kMostMeetings lets it have. rt-safe.
-    ConstrainedPose solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most = kMostLooks) noexcept;
+    /// In at most `most` looks, and no more than kMostMeetings lets it have. `two_springs`: what two hands draw the
+    /// part by, with `X_WH` where it would rest. rt-safe.
+    ConstrainedPose solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most = kMostLooks,
+                          const motion::TwoSprings* two_springs = nullptr) noexcept;
 
     /// Obstacle `i` is at `X_WO` from now on. rt-safe.
     void place(std::size_t i, const Pose& X_WO) noexcept {

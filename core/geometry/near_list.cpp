@@ -28,9 +28,9 @@ NearList::NearList(const Bounds& held, std::span<const NearPart> parts) : held_(
     }
     if (resting <= kAll) return;
     for (const NearPart& part : parts) {
-        Placed placed{ballOf(part.box), part.X_WP.q.conjugate()};
-        placed.ball.centre = part.X_WP * placed.ball.centre;
-        parts_.push_back(placed);
+        parts_.push_back({ballOf(part.box), Quat::Identity()});
+        centres_.push_back(parts_.back().ball.centre);
+        place(static_cast<std::uint32_t>(parts_.size() - 1), part.X_WP);
         moves_.push_back(part.moves ? 1 : 0);
     }
     near_ = woken_ = merged_ = all_;
@@ -43,6 +43,28 @@ NearList::NearList(const Bounds& held, std::span<const NearPart> parts) : held_(
         else
             sleeping_[asleep_++] = {-std::numeric_limits<double>::infinity(), i};
     }
+}
+
+void NearList::place(std::uint32_t i, const Pose& X_WP) noexcept {
+    parts_[i].q_PW = X_WP.q.conjugate();
+    parts_[i].ball.centre = X_WP * centres_[i];
+}
+
+void NearList::carry(std::uint32_t i, const Pose& X_WP) noexcept {
+    if (hasAll()) return;
+    place(i, X_WP);
+    if (moves_[i] != 0) return;
+    moves_[i] = 1;
+    const auto begin = sleeping_.begin(), end = begin + static_cast<std::ptrdiff_t>(asleep_);
+    const auto at = std::find_if(begin, end, [i](const Sleep& sleep) { return sleep.part == i; });
+    if (at == end) return;  // it is near
+    *at = sleeping_[--asleep_];
+    std::make_heap(begin, begin + static_cast<std::ptrdiff_t>(asleep_), kLater);
+    const auto near = near_.begin(), near_end = near + static_cast<std::ptrdiff_t>(near_count_);
+    const auto place = std::upper_bound(near, near_end, i);
+    std::move_backward(place, near_end, near_end + 1);
+    *place = i;
+    ++near_count_;
 }
 
 double NearList::gap(std::uint32_t i, const Pose& X_WG) const noexcept {

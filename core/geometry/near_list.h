@@ -13,7 +13,7 @@ namespace passung::geometry {
 struct NearPart {
     Bounds box;          // in its frame [m]
     Pose X_WP;           // where it rests
-    bool moves = false;  // it does not rest: always near
+    bool moves = false;  // it does not rest: always near, until NearList::rest
 };
 
 /// Which of many parts are near a held one, from pose to pose, without looking at those that cannot be. (Own; keys by
@@ -48,6 +48,13 @@ public:
     /// call. rt-safe.
     std::span<const std::uint32_t> within(const Pose& X_WG, double reach) noexcept;
 
+    /// Part `i` does not rest any more, and is at `X_WP` now: always near. O(n) where it was asleep. rt-safe.
+    void carry(std::uint32_t i, const Pose& X_WP) noexcept;
+    /// Part `i` rests where it is now. rt-safe.
+    void rest(std::uint32_t i) noexcept {
+        if (!hasAll()) moves_[i] = 0;
+    }
+
     /// All parts are always near.
     bool hasAll() const noexcept { return sleeping_.empty(); }
     /// g_i [m]. @pre !hasAll(), `i` rests. rt-safe.
@@ -74,6 +81,7 @@ private:
     };
 
     static Ball ballOf(const Bounds& box);
+    void place(std::uint32_t i, const Pose& X_WP) noexcept;
     void travel(const Pose& X_WG) noexcept;
     void putToSleep(std::uint32_t part, double gap) noexcept;
     double lookAt(std::uint32_t part, const Pose& X_WG) noexcept {
@@ -84,6 +92,7 @@ private:
     Ball held_;              // in its frame
     double farthest_ = 0.0;  // R_G [m]
     std::vector<Placed> parts_;
+    std::vector<Vec3> centres_;    // of their boxes, in their frames
     std::vector<Sleep> sleeping_;  // a heap, the least key first: the first `asleep_`
     std::size_t asleep_ = 0;
     std::vector<std::uint32_t> near_, woken_, merged_, all_;  // the first `near_count_`

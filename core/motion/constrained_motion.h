@@ -7,20 +7,20 @@
 
 #include "core/contact/contact_query.h"
 #include "core/motion/active_set.h"
+#include "core/motion/metric.h"
 
 namespace passung::motion {
 
 /// What a body's motion meets.
 struct Surroundings {
     const contact::ContactManifold& contacts;
-    Vec3 p_WO;                   // the body's origin
-    double metric_radius;        // ρ [m]
+    PlacedMetric metric;         // of the body's motions
     double keep_out;             // the φ that a contact must keep, slightly negative [m]
     double sunk_out = keep_out;  // and that one keeps which is deeper already, ≤ keep_out
 
     /// How far the point at `p_WP` is carried by `u` [m].
     Vec3 wayOf(const Vec3& p_WP, const Motion& u) const noexcept {
-        return u.head<3>() + (u.tail<3>() / metric_radius).cross(p_WP - p_WO);
+        return u.head<3>() + metric.turnOf(u).cross(p_WP - metric.centre);
     }
 };
 
@@ -44,8 +44,9 @@ inline constexpr double kFarther = 4.0;           // per overlap to be removed: 
 inline constexpr double kMotionTolerance = 1e-9;  // [m], of a constraint; 2e-7 of a wanted motion above 5 mm
 
 /// The motion nearest to `wanted` that obeys all contacts, by Gauss's principle of least constraint:
-///   min ½|u - w|²   s.t.   a_i · u ≥ b_i,   a_i = (g_i, (r_i × g_i)/ρ),  r_i = P_i - p_WO,  b_i = keep_out - φ_i
-/// g_i the gradient of φ; where φ_i < keep_out, b_i = sunk_out - φ_i: the deepest come out first.
+///   min ½|u - w|²   s.t.   a_i · u ≥ b_i,   a_i = (g_i, S⁻¹ (r_i × g_i)),  r_i = P_i - c,  b_i = keep_out - φ_i
+/// g_i the gradient of φ, c and S those of the metric; where φ_i < keep_out, b_i = sunk_out - φ_i: the deepest come out
+/// first.
 ///
 /// Source: Goldfarb and Idnani (1983), dual active set, for a unit Hessian. With N the active rows, λ their multipliers
 /// and u = w + N λ, λ ≥ 0, the most violated row a is taken up along

@@ -85,10 +85,12 @@ double FrictionBalance::coefficientOf(const Patch& patch) const noexcept {
 
 void FrictionBalance::place(Patch& patch) const noexcept {
     const auto [t1, t2] = tangentsOf(patch.is.normal);
-    const Vec3 r = patch.is.centre - around_.p_WO;
-    patch.B << t1.transpose(), r.cross(t1).transpose() / around_.metric_radius,  //
-        t2.transpose(), r.cross(t2).transpose() / around_.metric_radius,         //
-        Vec3::Zero().transpose(), patch.is.radius / around_.metric_radius * patch.is.normal.transpose();
+    const PlacedMetric& metric = around_.metric;
+    const Vec3 torsion = metric.isRound() ? Vec3(patch.is.radius / metric.radius * patch.is.normal)
+                                          : metric.perTurn(patch.is.radius * patch.is.normal);
+    patch.B << metric.rowOf(patch.is.centre, t1).transpose(),  //
+        metric.rowOf(patch.is.centre, t2).transpose(),         //
+        Vec3::Zero().transpose(), torsion.transpose();
 }
 
 int FrictionBalance::patchFor(const contact::ContactPoint& contact) noexcept {
@@ -125,8 +127,7 @@ void FrictionBalance::buildRow(int cut) noexcept {
     MotionRow& row = rows_[static_cast<std::size_t>(cut)];
     row.gradient = contact.gradient.norm();
     const double rough = coefficientOf(patch) * row.gradient;
-    row.a.head<3>() = contact.gradient;
-    row.a.tail<3>() = (contact.position - around_.p_WO).cross(contact.gradient) / around_.metric_radius;
+    row.a = around_.metric.rowOf(contact.position, contact.gradient);
     row.a -= rough * patch.B.transpose() * is.direction;
     row.length = row.a.norm();
     row.a /= row.length;
@@ -183,8 +184,8 @@ bool FrictionBalance::cutAmong(bool all, double enough) noexcept {
     double lift = 0.0;
     for (const Patch& patch : std::span(patches_).first(static_cast<std::size_t>(patch_count_)))
         lift = std::max(lift, coefficientOf(patch) * (patch.slip.norm() - patch.given));
-    const Vec3 dphi = u_.tail<3>() / around_.metric_radius;
-    const Vec3 at_origin = u_.head<3>() - dphi.cross(around_.p_WO);
+    const Vec3 dphi = around_.metric.turnOf(u_);
+    const Vec3 at_origin = u_.head<3>() - dphi.cross(around_.metric.centre);
     std::array<double, kBins> worst;
     std::array<Cut, kBins> which;
     worst.fill(least_violation);
@@ -197,7 +198,8 @@ bool FrictionBalance::cutAmong(bool all, double enough) noexcept {
         const int at = all ? patchFor(contact) : watched_[i].patch;
         const Patch& patch = patches_[static_cast<std::size_t>(at)];
         const double slip = patch.slip.norm(), violation = violationOf(contact, patch);
-        const std::size_t bin = binOf(contact.gradient, (contact.position - around_.p_WO).cross(contact.gradient));
+        const std::size_t bin =
+            binOf(contact.gradient, (contact.position - around_.metric.centre).cross(contact.gradient));
         if (!(violation > worst[bin])) continue;
         worst[bin] = violation;
         which[bin] = {static_cast<std::uint32_t>(&contact - around_.contacts.begin()), at,
@@ -312,7 +314,7 @@ double FrictionBalance::turn(bool centres) noexcept {
         if (centres && patch.pressure > 1e-9 * size_) {
             const Vec3 centre = patch.moment / patch.pressure;
             moved =
-                std::max(moved, (centre - patch.is.centre).norm() / around_.metric_radius * patch.is.impulse.norm());
+                std::max(moved, (centre - patch.is.centre).norm() / around_.metric.radius * patch.is.impulse.norm());
             patch.is.centre = centre;
             place(patch);
         }

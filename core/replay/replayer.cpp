@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <concepts>
 
 namespace passung::replay {
 
@@ -17,7 +18,8 @@ public:
         if (std::bit_cast<std::uint32_t>(recorded) == std::bit_cast<std::uint32_t>(replayed)) return;
         report(name, static_cast<double>(recorded), static_cast<double>(replayed));
     }
-    void field(const char* name, std::uint32_t recorded, std::uint32_t replayed) {
+    template <std::integral Number>
+    void field(const char* name, Number recorded, Number replayed) {
         if (recorded != replayed) report(name, recorded, replayed);
     }
     /// One NaN is as another: a recording from before the gap was recorded has its reader's.
@@ -56,6 +58,7 @@ std::optional<Difference> compare(const TickRecord& recorded, const TickRecord& 
     comparison.field("hand_depth_m", recorded.hand_depth_m, replayed.hand_depth_m);
     comparison.field("proxy_depth_m", recorded.proxy_depth_m, replayed.proxy_depth_m);
     comparison.gap(recorded.proxy_gap_m, replayed.proxy_gap_m);
+    if (recorded.held != kPartNotTold) comparison.field("held", recorded.held, replayed.held);
     comparison.field("energy_J", recorded.energy_J, replayed.energy_J);
     comparison.field("quality", recorded.quality, replayed.quality);
     comparison.field("status", recorded.status, replayed.status);

@@ -47,12 +47,13 @@ const char* surfaceProblem(const PartSpec& held, const PartSpec& obstacle, const
     return nullptr;
 }
 
-/// Calls `f` with each held part and each part that it can meet. Parts of two hands meet twice, once as either's.
+/// Calls `f` with each part that hands hold or may hold and each part that it can meet. Of those two meet twice, once
+/// as either's.
 template <class F>
 void eachPair(const SceneSpec& scene, F f) {
     for (const PartSpec& held : scene.parts)
         for (const PartSpec& obstacle : scene.parts)
-            if (held.held && &held != &obstacle) f(held, obstacle);
+            if (held.moves() && &held != &obstacle) f(held, obstacle);
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ std::optional<Error> weightProblem(const SceneSpec& spec, const PartSpec& part, 
     };
     if (!built.shape && !isClosed(built.report)) return wrong("needs a mesh without holes, which encloses a volume");
     if (built.shape && std::holds_alternative<shape::Sheet>(*built.shape)) return wrong("a sheet encloses no volume");
-    if (!part.held || spec.effects.weight.gravity.isZero(0.0)) return std::nullopt;
+    if (!part.moves() || spec.effects.weight.gravity.isZero(0.0)) return std::nullopt;
     const auto weight = weigh(spec, *massOf(built, part.density));
     if (weight && weight->turn > kMostHangingTurn)
         return wrong("the weight would turn the part by " + number("%.2g", weight->turn) +
@@ -69,9 +69,9 @@ Result<Scene> buildScene(const SceneSpec& spec, PartCache& cache) {
     const bool fields = geometry == Geometry::Field;
     for (std::size_t i = 0; i < spec.parts.size(); ++i) {
         const PartSpec& part = spec.parts[i];
-        const bool obstacle = !part.held || spec.handCount() > 1;
+        const bool obstacle = !part.held || part.pickable || spec.handCount() > 1;
         auto built = cache.get(part, {.field = fields && (obstacle || spec.contact.two_way),
-                                      .shell = fields && (part.held || spec.contact.two_way),
+                                      .shell = fields && (part.moves() || spec.contact.two_way),
                                       .clusters = geometry == Geometry::Surface,
                                       .tolerance = spec.contact.tolerance,
                                       .cell = spec.contact.cell,

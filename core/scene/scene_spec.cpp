@@ -28,6 +28,7 @@ public:
     }
     void device(const HandSpec& hand) {
         const auto& [limits, registration, start_gate, name] = hand;
+        finite("start gate: pose", start_gate.X_WH);
         positive("limits: max force", limits.max_force);
         notNegative("limits: max torque", limits.max_torque);
         positive("limits: max force rate", limits.max_force_rate);
@@ -50,6 +51,18 @@ public:
 std::size_t SceneSpec::heldBy(std::size_t i) const {
     const auto held = [i](const PartSpec& part) { return part.held && part.hand == i; };
     return static_cast<std::size_t>(std::find_if(parts.begin(), parts.end(), held) - parts.begin());
+}
+
+bool SceneSpec::canPick(std::size_t i) const {
+    const std::size_t held = heldBy(i);
+    return effects.picks() && (held == parts.size() || parts[held].pickable);
+}
+
+std::vector<std::size_t> SceneSpec::obstaclesOf(std::size_t i) const {
+    std::vector<std::size_t> obstacles;
+    for (std::size_t part = 0; part < parts.size(); ++part)
+        if (part != heldBy(i) || canPick(i)) obstacles.push_back(part);
+    return obstacles;
 }
 
 std::vector<Error> SceneSpec::validate() const {
@@ -81,8 +94,17 @@ std::vector<Error> SceneSpec::validate() const {
     }
     check.require(held.size() <= kMostHands, "hands", static_cast<double>(held.size()), "must be 1 … 4");
     for (const int parts_of_hand : held)
-        check.require(parts_of_hand == 1, "part: held", parts_of_hand,
-                      held.size() == 1 ? "exactly one part must be held" : "each hand must hold exactly one part");
+        if (effects.picks())
+            check.require(parts_of_hand <= 1, "part: held", parts_of_hand, "each hand may hold one part at most");
+        else
+            check.require(parts_of_hand == 1, "part: held", parts_of_hand,
+                          held.size() == 1 ? "exactly one part must be held" : "each hand must hold exactly one part");
+    const bool pickable = std::any_of(parts.begin(), parts.end(), [](const PartSpec& part) { return part.pickable; });
+    check.notNegative("effects: pick: reach", effects.pick.reach);
+    check.require(effects.pick.button >= 0 && effects.pick.button < kMostButtons, "effects: pick: button",
+                  effects.pick.button, "must be 0 … 23");
+    check.require(pickable == effects.picks(), "effects: pick: reach", effects.pick.reach,
+                  pickable ? "must be > 0 where a part is pickable" : "must be 0 where no part is pickable");
     check.positive("contact: stiffness", contact.stiffness);
     check.notNegative("contact: rotational stiffness", contact.rotational_stiffness);
     check.notNegative("contact: damping", contact.damping);
@@ -101,8 +123,8 @@ std::vector<Error> SceneSpec::validate() const {
     check.positive("contact: spacing", contact.spacing);
     check.require(contact.budget_nodes >= 0, "contact: budget_nodes", contact.budget_nodes, "must be ≥ 0");
     if (handCount() > 1 && std::count_if(parts.begin(), parts.end(),
-                                         [](const PartSpec& part) { return part.held && part.friction > 0.0; }) > 1)
-        check.errors.push_back({.message = "must be 0 on all parts that are held but one: nothing rubs between hands",
+                                         [](const PartSpec& part) { return part.moves() && part.friction > 0.0; }) > 1)
+        check.errors.push_back({.message = "must be 0 on all parts that hands hold but one: nothing rubs between hands",
                                 .key = "part: friction"});
     check.require(contact.budget_nodes <= 0 || handCount() == 1, "contact: budget_nodes", contact.budget_nodes,
                   "must be 0 with more than one hand: a look may not take several ticks where parts move meanwhile");

@@ -25,12 +25,16 @@ struct PartSpec {
     std::string name;
     std::variant<shape::Shape, MeshFile> geometry;
     Pose X_WP;                         // part to world at the start
-    bool held = false;                 // by a hand; each hand of a scene holds exactly one
+    bool held = false;                 // by a hand, from the start; a hand holds one, or where it may pick up none
     std::size_t hand = 0;              // which one, in the order of SceneSpec::hand()
+    bool pickable = false;             // hands may pick it up and let it go: Effects::pick
     double friction = 0.0;             // of the surface at rest: μ_s of a pair is the geometric mean, ≥ 0
     double sliding_friction = 0.0;     // likewise μ_d, ≤ friction
     double density = 0.0;              // [kg/m³], ≥ 0; 0: weighs nothing
     Vec3 shown_offset = Vec3::Zero();  // drawn this far from where it is touched, world axes [m]
+
+    /// A hand holds it, or may.
+    bool moves() const noexcept { return held || pickable; }
 };
 
 enum class ContactMethod { Penalty, GodObjectHeuristic, GodObject };
@@ -95,6 +99,7 @@ struct StartGate {
     double position_tolerance = 0.0;  // [m]
     double angle_tolerance = 0.0;     // [rad]
     int hold_ticks = 0;
+    Pose X_WH = {};  // the start pose of a hand that begins with nothing; of one with a part it is the part's
 };
 
 /// A decaying vibration at every impact.
@@ -109,6 +114,15 @@ struct Weight {
     Vec3 gravity = Vec3::Zero();  // world axes [m/s²]; zero: none
 };
 
+/// Hands pick parts up and let them go, by a button of their device: core/tick/pick.h.
+struct Pick {
+    double reach = 0.0;     // from the hand's point to a part that it closes on [m], ≥ 0; 0: nothing is picked up
+    int button = 0;         // of the device, 0 … kMostButtons - 1
+    bool on_press = false;  // each press closes or opens the hand; else it is closed while the button is down
+    bool locks = false;     // what is let go stays there for good
+};
+inline constexpr int kMostButtons = 24;  // that a record keeps
+
 inline constexpr double kStandardGravity = 9.80665;  // [m/s²]
 /// A part's weight turns it by no more than this against the coupling's rotational stiffness [rad]: from half a turn on
 /// nothing would tell which way, and contacts turn it too.
@@ -119,6 +133,9 @@ struct Effects {
     double passivity_damping = 0.0;  // most of the passivity controller's damper [N·s/m], ≥ 0; 0: no controller
     Transients transients;
     Weight weight;
+    Pick pick;
+
+    bool picks() const noexcept { return pick.reach > 0.0; }
 };
 
 inline constexpr std::size_t kMostHands = 4;
@@ -148,8 +165,13 @@ struct SceneSpec {
     HandSpec hand(std::size_t i) const {
         return i == 0 ? HandSpec{limits, registration, start_gate} : other_hands[i - 1];
     }
-    /// Index of the part that hand `i` holds. @pre validate() found nothing, `i` < handCount()
+    /// Index of the part that hand `i` begins with; parts.size() if it begins with nothing.
+    /// @pre validate() found nothing, `i` < handCount()
     std::size_t heldBy(std::size_t i) const;
+    /// True if hand `i` can ever hold another part than the one that it begins with. @pre as heldBy
+    bool canPick(std::size_t i) const;
+    /// Index of each part that what hand `i` holds may touch. @pre as heldBy
+    std::vector<std::size_t> obstaclesOf(std::size_t i) const;
 
     /// Everything wrong with the values, cross-field rules included. Finite first.
     std::vector<Error> validate() const;

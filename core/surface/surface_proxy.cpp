@@ -90,7 +90,7 @@ void SurfaceProxy::place(const Pose& X_WG) noexcept {
 
 void SurfaceProxy::measureBy(const motion::Metric& metric) noexcept {
     settings_.metric = metric;
-    place(X_);
+    giveUpLook();
 }
 
 void SurfaceProxy::prepare() {
@@ -130,7 +130,7 @@ void SurfaceProxy::limit(double most) noexcept {
     for (int i = 0;; ++i) {
         X_next_ = settings_.metric.moved(X_, u_);
         P_next_ = Placement(X_next_);
-        arc_ = reach * settings_.metric.turnOf(u_).squaredNorm() / 8.0;
+        arc_ = reach * settings_.metric.at(X_).turnOf(u_).squaredNorm() / 8.0;
         way_ = wayBetween(P_, P_next_) + arc_;
         if (way_ <= most || i == 8) break;
         u_ *= 0.98 * most / way_;
@@ -223,7 +223,7 @@ void SurfaceProxy::solve() noexcept {
         contact.phi = std::max(row.s - gap_, -ease_) + row.bend;
         manifold_.tryPush(contact);
     }
-    const motion::Surroundings around{manifold_, settings_.metric.centre(X_), settings_.metric.radius, 0.0};
+    const motion::Surroundings around{manifold_, settings_.metric.at(X_), 0.0};
     const motion::ConstrainedMotion result = motion::constrainMotion(wanted_, around, {likely.data(), likely_count});
     u_ = result.u;
     for (int i = 0; i < result.active; ++i) {
@@ -279,7 +279,8 @@ bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
     refreshRows();
     if (tick_.looks == 0) adaptGap();
     ease_ = tick_.looks == 0 ? kEase : 0.0;
-    wanted_ = settings_.metric.between(X_, X_WH_);
+    wanted_ =
+        two_springs_ != nullptr ? two_springs_->wantedAt(settings_.metric, X_) : settings_.metric.between(X_, X_WH_);
     if (!(most_in_tick_ - way_in_tick_ > kStill)) return false;
     if (overlaps_) {
         wanted_ = wayOut();
@@ -364,11 +365,11 @@ bool SurfaceProxy::wakeAll() noexcept {
 
 /// What the rows' linear motion overlooked at the end of the look, so that the next round allows for it.
 void SurfaceProxy::bendRows() noexcept {
+    const motion::PlacedMetric here = settings_.metric.at(X_);
+    const Vec3 turn = here.turnOf(u_);
     for (std::size_t i = 0; i < row_count_; ++i) {
         ContactRow& row = rows_[i];
-        const double linear =
-            row.s + normalOf(row).dot(Vec3(
-                        u_.head<3>() + settings_.metric.turnOf(u_).cross(pointOf(row) - settings_.metric.centre(X_))));
+        const double linear = row.s + normalOf(row).dot(Vec3(u_.head<3>() + turn.cross(pointOf(row) - here.centre)));
         row.bend = std::min(0.0, row.gapAt(bodies_[row.body].P_next) - linear);
     }
 }
@@ -437,7 +438,8 @@ bool SurfaceProxy::dropsGhosts() noexcept {
     return any;
 }
 
-const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
+const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH, const motion::TwoSprings* two_springs) noexcept {
+    two_springs_ = two_springs;
     tick_ = {};
     tick_.work = std::min(std::exchange(owed_, 0), budget_ / 2);
     chain_count_ = 0;

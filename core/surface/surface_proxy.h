@@ -90,7 +90,7 @@ public:
 
     /// Puts the held part somewhere; the past is void. rt-safe; the next ticks find out what is near.
     void place(const Pose& X_WG) noexcept;
-    /// The held part is held at another point from now on; the past is void. rt-safe.
+    /// The held part is held otherwise from now on. rt-safe.
     void measureBy(const motion::Metric& metric) noexcept;
     /// Finds out what is near, whatever it takes. For the time before the first tick.
     void prepare();
@@ -111,8 +111,9 @@ public:
     /// Puts body `i` somewhere, maybe over the held part; what was known of it is void. rt-safe, bounded.
     void placeBody(std::size_t i, const Pose& X_WB) noexcept;
 
-    /// Follows the hand. rt-safe, bounded by the budget.
-    const SurfaceTick& advance(const Pose& X_WH) noexcept;
+    /// Follows the hand, or what two hands draw the part by, with `X_WH` where it would rest. rt-safe, bounded by the
+    /// budget.
+    const SurfaceTick& advance(const Pose& X_WH, const motion::TwoSprings* two_springs = nullptr) noexcept;
 
     /// Rows that hold the pose: those with `push` > 0. Each is of a face of its `body`, in that frame.
     std::span<const ContactRow> rows() const noexcept { return {rows_.data(), row_count_}; }
@@ -248,8 +249,9 @@ private:
     double others_way_ = 0.0;  // as it was told [m]
 
     // Of the tick.
-    double trust_ = 0.0, way_in_tick_ = 0.0;       // [m]
-    double most_in_tick_ = 0.0, most_held_ = 0.0;  // of the way, and where rows hold the pose [m]
+    const motion::TwoSprings* two_springs_ = nullptr;  // where two hands hold the part
+    double trust_ = 0.0, way_in_tick_ = 0.0;           // [m]
+    double most_in_tick_ = 0.0, most_held_ = 0.0;      // of the way, and where rows hold the pose [m]
 
     // Of the look that was begun.
     Phase phase_ = Phase::Idle;

@@ -57,16 +57,18 @@ ClosedFormMemory closedFormMemory(const HandModel& model) {
 void followInClosedForm(const HandModel& model, const HandSample& hand, const HeldTarget& target,
                         const ObstaclePoses& obstacles, Proxy& proxy, ClosedFormHold& held, ClosedFormMemory& memory,
                         Pushes& pushes, Report& report) noexcept {
-    for (const std::uint32_t i : model.moving) {
-        memory.solver.place(i, obstacles.X_WO[i]);
-        memory.at_hand[i].place(obstacles.X_WO[i]);
+    for (const ObstaclePoses::Carried& in_hand : obstacles.inHands()) {
+        memory.solver.place(in_hand.obstacle, obstacles.X_WO[in_hand.obstacle]);
+        memory.at_hand[in_hand.obstacle].place(obstacles.X_WO[in_hand.obstacle]);
     }
+    obstacles.place(memory.solver.near());
+    obstacles.place(memory.near_hand);
     if (hand.relocated) {  // a spring from the old place would throw the hand across the room
         proxy.X_WG = hand.X_WH;
         held.hold = {};
     }
     const closed_form::ConstrainedPose found =
-        memory.solver.solve(proxy.X_WG, target.X_WT, held.hold, mostLooks(model, memory));
+        memory.solver.solve(proxy.X_WG, target.X_WT, held.hold, mostLooks(model, memory), target.twoSprings());
     proxy.X_WG = found.X_WG;
     proxy.clearance = -found.overlap;
     note(found, report);

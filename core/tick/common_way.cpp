@@ -20,18 +20,19 @@ struct Going {
     double turn, way;  // [rad], [m]
 };
 
-/// The ways of the held part to `X_WG` and of the part in another hand that is number `k` of those that move, seen as
+/// The ways of the held part to `X_WG` and of a part in another hand, seen as
 /// points of the held part go: those of the other part are near them where they could meet.
 struct CommonWay {
-    CommonWay(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WG, std::size_t k) noexcept
-        : last(obstacles.X_WO_begin[k]),
-          now(obstacles.X_WO[model.moving[k]]),
+    CommonWay(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WG,
+              const ObstaclePoses::Carried& in_hand) noexcept
+        : last(in_hand.X_WO_begin),
+          now(obstacles.X_WO[in_hand.obstacle]),
           carried(now * last.inverse() * obstacles.X_WG_begin),
           own(obstacles.X_WG_begin, X_WG, model.reach),
           other(obstacles.X_WG_begin, carried, model.reach),
           relative(carried, X_WG, model.reach) {
         const double apart =
-            (now.p - X_WG.p).norm() - model.reach - model.bodies[model.obstacles[model.moving[k]].body].reach;
+            (now.p - X_WG.p).norm() - model.reach - model.bodies[model.obstacles[in_hand.obstacle].body].reach;
         far = apart > own.way + other.way;
     }
 
@@ -51,15 +52,15 @@ struct CommonWay {
 template <class Meets>
 bool crosses(const HandModel& model, const ObstaclePoses& obstacles, const Pose& X_WG, double accepted,
              Meets meets) noexcept {
-    for (std::size_t k = 0; k < model.moving.size(); ++k) {
-        const CommonWay way(model, obstacles, X_WG, k);
+    for (const ObstaclePoses::Carried& in_hand : obstacles.inHands()) {
+        const CommonWay way(model, obstacles, X_WG, in_hand);
         const double most = accepted + way.bent();
         if (way.least() <= most) continue;
         const double pieces = std::ceil(way.relative.way / kLongestPiece) + 1.0;
         if (pieces > kMostPieces) return true;
         for (int piece = 1; piece < static_cast<int>(pieces); ++piece) {
             const double share = piece / pieces;
-            if (meets(model.moving[k], between(way.last, way.now, share), between(obstacles.X_WG_begin, X_WG, share),
+            if (meets(in_hand.obstacle, between(way.last, way.now, share), between(obstacles.X_WG_begin, X_WG, share),
                       most))
                 return true;
         }
@@ -88,7 +89,8 @@ void keepCommonWayInClosedForm(const HandModel& model, const ObstaclePoses& obst
         return search.overlapAt(X_WG).depth > most;
     };
     const bool crossed = crosses(model, obstacles, proxy.X_WG, kAcceptedOnWay + overlap(proxy), meets);
-    for (const std::uint32_t i : model.moving) memory.at_hand[i].place(obstacles.X_WO[i]);
+    for (const auto& in_hand : obstacles.inHands())
+        memory.at_hand[in_hand.obstacle].place(obstacles.X_WO[in_hand.obstacle]);
     if (!crossed) return;
     report.status |= kSuspended;
     proxy.X_WG = obstacles.X_WG_begin;

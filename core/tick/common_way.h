@@ -35,13 +35,13 @@ inline constexpr StageOf kCommonWay{
      .needs =
          [](const HandModel& model) {
              return model.hasFieldProxy() && model.contact.method != scene::ContactMethod::Penalty &&
-                    !model.moving.empty();
+                    model.meetsHands();
          },
      .reason =
          [](const HandModel&) { return "parts in different hands move in one tick: their common way is free too"; },
      .spared =
          [](const HandModel& model) {
-             return model.moving.empty() ? "no other hand holds a part" : contactInstead(model);
+             return model.meetsHands() ? contactInstead(model) : "no other hand holds a part";
          }}};
 
 void keepCommonWayInClosedForm(const HandModel& model, const ObstaclePoses& obstacles, Proxy& proxy,
@@ -51,12 +51,12 @@ inline constexpr StageOf kClosedFormCommonWay{
     {.name = "closed-form common way",
      .parameters = "",
      .cost = "where another hand's part has moved, a look at its faces and edges for every half millimetre",
-     .needs = [](const HandModel& model) { return model.hasClosedForm() && !model.moving.empty(); },
+     .needs = [](const HandModel& model) { return model.hasClosedForm() && model.meetsHands(); },
      .reason =
          [](const HandModel&) { return "parts in different hands move in one tick: their common way is free too"; },
      .spared =
          [](const HandModel& model) {
-             return model.moving.empty() ? "no other hand holds a part" : contactInstead(model);
+             return model.meetsHands() ? contactInstead(model) : "no other hand holds a part";
          }}};
 
 }  // namespace passung::tick

@@ -17,8 +17,9 @@ void add(ObstaclePush& push, const Wrench& more, double pressure) noexcept {
 class CouplingPush {
 public:
     CouplingPush(const HandModel& model, const HeldTarget& target, const Pose& X_WG) noexcept
-        : K_(model.contact.stiffness),
-          turn_(model.contact.rotational_stiffness / (target.metric.radius * target.metric.radius)),
+        : K_(target.springs == 1 ? model.contact.stiffness : 0.0),
+          turn_(target.springs == 1 ? model.contact.rotational_stiffness / (target.metric.radius * target.metric.radius)
+                                    : 0.0),
           centre_(target.metric.centre(X_WG)),
           lever_(centre_ - X_WG.p) {}
 

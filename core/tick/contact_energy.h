@@ -53,11 +53,11 @@ inline constexpr StageOf kHeldPushes{
     {.name = "pushes between hands",
      .parameters = "",
      .cost = "a little for each obstacle that pushes",
-     .needs = [](const HandModel& model) { return model.hasProxy() && !model.moving.empty(); },
+     .needs = [](const HandModel& model) { return model.hasProxy() && model.meetsHands(); },
      .reason = [](const HandModel&) { return "parts in different hands may touch: what pushes them is accounted for"; },
      .spared =
          [](const HandModel& model) {
-             return model.moving.empty() ? "no other hand holds a part" : contactInstead(model);
+             return model.meetsHands() ? contactInstead(model) : "no other hand holds a part";
          }}};
 
 /// Books what was sent since the good sample before over the handle's motion since then. rt-safe.

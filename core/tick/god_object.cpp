@@ -123,7 +123,7 @@ void sweepProxy(const HandModel& model, const HandSample& hand, const HeldTarget
     bool arrived = false, whole = false;  // whole: the last step was all that was allowed
     bool suspended = false;
     for (int sweep = 0; sweep <= kSweeps; ++sweep) {
-        const motion::Motion wanted = target.metric.between(proxy.X_WG, target.X_WT);
+        const motion::Motion wanted = target.wantedAt(proxy.X_WG);
         const double path = longestPath(moving, wanted);
         const double before = overlap(proxy);
         const bool goes_on = proxy.step.look.open;  // with what an earlier tick began

@@ -16,7 +16,8 @@ constexpr double kLargestTurn = 0.035;  // [rad] of one correction
 /// Direction of the correction: translation along the penalty force, rotation about its torque, shared by λ.
 motion::Motion correctionOf(const motion::Metric& metric, const Proxy& proxy, double depth) noexcept {
     const double rho = metric.radius;
-    const Vec3 centre = metric.centre(proxy.X_WG);
+    const motion::PlacedMetric here = metric.at(proxy.X_WG);
+    const Vec3& centre = here.centre;
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
     for (const contact::ContactPoint& c : proxy.manifold) {
         if (!isInside(c)) continue;
@@ -39,7 +40,7 @@ motion::Motion correctionOf(const motion::Metric& metric, const Proxy& proxy, do
         hh += lever * lever;
     }
     const double theta = hh > 0.0 ? std::clamp(ph / hh, 0.0, std::min(kLargestTurn, 3.0 * depth / rho)) : 0.0;
-    u.tail<3>() = (1.0 - lambda) * theta * rho * axis;
+    u.tail<3>() = here.tailOf((1.0 - lambda) * theta, axis);
     return u;
 }
 
@@ -105,7 +106,7 @@ void moveProxy(const HandModel& model, const HandSample& hand, const HeldTarget&
     LookBudget budget(target.work, report);
     bool arrived = false, suspended = false;
     for (int sub_step = 0; sub_step < kSubSteps; ++sub_step) {
-        const motion::Motion wanted = target.metric.between(proxy.X_WG, target.X_WT);
+        const motion::Motion wanted = target.wantedAt(proxy.X_WG);
         const double path = longestPath(moving, wanted);
         arrived = path < kStill;
         if (arrived) break;

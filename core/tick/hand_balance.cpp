@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "core/tick/hand_state.h"
+#include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
@@ -49,18 +51,17 @@ void eachContact(const HandModel& model, const HandState& state, Take take) noex
 
 /// Who is in the balance.
 bool isBalanced(const HandModel& model, const HandState& state) noexcept {
-    return model.hasProxy() && model.contact.method != scene::ContactMethod::Penalty && state.engaged;
+    return model.hasProxy() && !model.follows && model.contact.method != scene::ContactMethod::Penalty && state.engaged;
 }
 
 /// Hands, and what lies between them.
 class HandBalance {
 public:
-    HandBalance(std::span<const HandModel> models, std::span<const HandState> states, std::span<const Pose> X_WH,
-                BalanceMemory& memory) noexcept
-        : models_(models), states_(states), memory_(memory) {
-        for (std::size_t h = 0; h < models.size(); ++h) {
-            if (!isBalanced(models[h], states[h])) continue;
-            blockOf(wanted_, h) = states[h].metric.between(states[h].X_WG, X_WH[h]);
+    HandBalance(std::span<const HandInTick> hands, std::span<const Pose> X_WH, BalanceMemory& memory) noexcept
+        : hands_(hands), memory_(memory) {
+        for (std::size_t h = 0; h < hands.size(); ++h) {
+            if (!isBalanced(h)) continue;
+            blockOf(wanted_, h) = scaleOf(h) * wantedOf(h, X_WH[h]);
             way_ += reachOf(h, wanted_);
         }
         collect();
@@ -84,7 +85,7 @@ public:
     const BalancedContact& contactOf(int i) const noexcept { return memory_.contacts[active_.row(i).contact]; }
     /// λ of the header [m].
     double pushOf(int i) const noexcept { return active_.lambda(i) / active_.row(i).length; }
-    motion::Motion motionOf(std::size_t hand) const noexcept { return blockOf(u_, hand); }
+    motion::Motion motionOf(std::size_t hand) const noexcept { return blockOf(u_, hand) / scaleOf(hand); }
     /// How far holding contact `i` lets the part in `hand` give way, times its force.
     double givesWay(int i, std::size_t hand) const noexcept {
         return active_.lambda(i) * blockOf(active_.row(i).a, hand).dot(blockOf(u_, hand));
@@ -93,28 +94,39 @@ public:
 private:
     std::span<BalancedContact> contacts() noexcept { return std::span(memory_.contacts).first(memory_.count); }
 
+    /// Springs of two hands on one part count twice: its motions times this have the metric of one spring.
+    double scaleOf(std::size_t hand) const noexcept {
+        return state(hand).springs == 1 ? 1.0 : std::sqrt(static_cast<double>(state(hand).springs));
+    }
+    motion::Motion wantedOf(std::size_t hand, const Pose& X_WH) const noexcept {
+        const HandState& own = state(hand);
+        return own.springs == 1 ? own.metric.between(own.X_WG, X_WH) : own.two_springs.wantedAt(own.metric, own.X_WG);
+    }
+    motion::Motion rowOf(std::size_t hand, const Found& found) const noexcept {
+        return state(hand).metric.at(state(hand).X_WG).rowOf(found.point, found.normal) / scaleOf(hand);
+    }
+
     double reachOf(std::size_t hand, const Motions& u) const noexcept {
-        return states_[hand].metric.wayOf(blockOf(u, hand), models_[hand].reach);
+        return state(hand).metric.wayOf(blockOf(u, hand) / scaleOf(hand), model(hand).reach);
     }
 
     std::size_t holderOf(std::size_t body) const noexcept {
-        for (std::size_t h = 0; h < models_.size(); ++h)
-            if (models_[h].body == body && isBalanced(models_[h], states_[h])) return h;
+        for (std::size_t h = 0; h < hands_.size(); ++h)
+            if (model(h).body == body && isBalanced(h)) return h;
         return BalancedContact::kNobody;
     }
 
     void collect() noexcept {
         memory_.count = 0;
-        for (std::size_t h = 0; h < models_.size(); ++h) {
-            if (!isBalanced(models_[h], states_[h])) continue;
-            eachContact(models_[h], states_[h], [&](const Found& found) { add(h, found); });
+        for (std::size_t h = 0; h < hands_.size(); ++h) {
+            if (!isBalanced(h)) continue;
+            eachContact(model(h), state(h), [&](const Found& found) { add(h, found); });
         }
     }
 
     void add(std::size_t hand, const Found& found) noexcept {
         if (found.room > kFarthestWays * way_ || memory_.count == memory_.contacts.size()) return;
-        const HandModel& model = models_[hand];
-        const std::size_t body = model.obstacles[found.obstacle].body;
+        const std::size_t body = model(hand).obstacles[found.obstacle].body;
         BalancedContact& contact = memory_.contacts[memory_.count];
         contact = {.row = {},
                    .point = found.point,
@@ -124,13 +136,13 @@ private:
                    .other = holderOf(body)};
         Row& row = contact.row;
         row.a.setZero();
-        blockOf(row.a, hand) = states_[hand].metric.rowOf(states_[hand].X_WG, found.point, found.normal);
+        blockOf(row.a, hand) = rowOf(hand, found);
         double room = found.room;
         if (contact.other != BalancedContact::kNobody) {
             const std::size_t other = contact.other;
-            blockOf(row.a, other) = -states_[other].metric.rowOf(states_[other].X_WG, found.point, found.normal);
+            blockOf(row.a, other) = -rowOf(other, found);
             // The obstacle may have had its turn since.
-            const Pose moved = states_[other].X_WG * states_[hand].X_WO[found.obstacle].inverse();
+            const Pose moved = state(other).X_WG * state(hand).X_WO[found.obstacle].inverse();
             room -= found.normal.dot(moved * found.point - found.point);
             between_ = true;
         }
@@ -159,8 +171,11 @@ private:
         }
     }
 
-    std::span<const HandModel> models_;
-    std::span<const HandState> states_;
+    const HandModel& model(std::size_t hand) const noexcept { return *hands_[hand].model; }
+    const HandState& state(std::size_t hand) const noexcept { return *hands_[hand].state; }
+    bool isBalanced(std::size_t hand) const noexcept { return tick::isBalanced(model(hand), state(hand)); }
+
+    std::span<const HandInTick> hands_;
     BalanceMemory& memory_;
     Motions wanted_ = Motions::Zero(), u_ = Motions::Zero();
     double way_ = 0.0;  // of all hands [m]
@@ -169,74 +184,83 @@ private:
 };
 
 /// K λ n at its point, on the part of `hand`.
-void push(const HandModel& model, HandState& state, std::size_t obstacle, const Vec3& point,
-          const Vec3& along) noexcept {
+void push(const HandInTick& hand, std::size_t obstacle, const Vec3& point, const Vec3& along) noexcept {
+    const HandModel& model = *hand.model;
+    HandState& state = *hand.state;
     addPush(model, state, state.X_WG, point, along, model.contact.stiffness * along.norm(), state.from_hands[obstacle]);
     ++state.contacts_of_hands;
 }
 
 /// How far the hands have gone since the tick before, as each is told of the others.
-void tellWays(std::span<const HandModel> models, std::span<HandState> states, std::span<const Pose> X_WH) noexcept {
+void tellWays(std::span<const HandInTick> hands, std::span<const Pose> X_WH) noexcept {
     std::array<double, scene::kMostHands> way{};
     double all = 0.0;
-    for (std::size_t h = 0; h < models.size(); ++h) {
-        const Pose &before = states[h].X_WH_before, &now = X_WH[h];
-        way[h] = (now.p - before.p).norm() + models[h].reach * rotationVector(now.q * before.q.conjugate()).norm();
+    for (std::size_t h = 0; h < hands.size(); ++h) {
+        Pose& before = hands[h].state->X_WH_before;
+        const Pose& now = X_WH[h];
+        if (!hands[h].model->hasPart() || hands[h].model->follows) continue;
+        way[h] =
+            (now.p - before.p).norm() + hands[h].model->reach * rotationVector(now.q * before.q.conjugate()).norm();
         all += way[h];
-        states[h].X_WH_before = now;
+        before = now;
     }
-    for (std::size_t h = 0; h < models.size(); ++h) states[h].others_way = std::max(0.0, all - way[h]);
+    for (std::size_t h = 0; h < hands.size(); ++h) hands[h].state->others_way = std::max(0.0, all - way[h]);
 }
 
 void forget(HeldTarget& target) noexcept {
     target.from_hands.clear();
     target.contacts_of_hands = 0;
+    target.balanced = false;
 }
 
 }  // namespace
 
-Turns balanceHands(std::span<const HandModel> models, std::span<HandState> states, std::span<const Pose> X_WH,
-                   std::size_t first, BalanceMemory& memory) noexcept {
-    const std::size_t count = models.size();
+Turns balanceHands(std::span<const HandInTick> hands, std::span<const Pose> X_WH, std::size_t first,
+                   BalanceMemory& memory) noexcept {
+    const std::size_t count = hands.size();
     Turns turns{};
     for (std::size_t i = 0; i < count; ++i) {
         turns[i] = (first + i) % count;
-        states[i].X_WT = X_WH[i];
-        forget(states[i]);
+        hands[i].state->X_WT = X_WH[i];
+        forget(*hands[i].state);
     }
     if (memory.contacts.empty()) return turns;
-    tellWays(models, states, X_WH);
-    HandBalance balance(models, states, X_WH, memory);
+    tellWays(hands, X_WH);
+    HandBalance balance(hands, X_WH, memory);
     if (!balance.hasAny() || !balance.solve()) return turns;
     std::array<double, scene::kMostHands> gives_way{};
     std::array<bool, scene::kMostHands> touched{};
     for (int i = 0; i < balance.holding(); ++i) {
         const BalancedContact& contact = balance.contactOf(i);
         const Vec3 along = balance.pushOf(i) * contact.normal;
-        push(models[contact.hand], states[contact.hand], contact.obstacle, contact.point, along);
+        push(hands[contact.hand], contact.obstacle, contact.point, along);
         if (contact.other == BalancedContact::kNobody) continue;
         gives_way[contact.hand] += balance.givesWay(i, contact.hand);
-        const std::size_t body = models[contact.hand].body, own = models[contact.other].body;
-        push(models[contact.other], states[contact.other], body < own ? body : body - 1, contact.point, -along);
+        const std::size_t body = hands[contact.hand].model->body, own = hands[contact.other].model->body;
+        push(hands[contact.other], body < own ? body : body - 1, contact.point, -along);
         gives_way[contact.other] += balance.givesWay(i, contact.other);
         touched[contact.hand] = touched[contact.other] = true;
     }
     for (std::size_t h = 0; h < count; ++h)
-        if (touched[h])
-            states[h].X_WT = states[h].metric.moved(states[h].X_WG, balance.motionOf(h));
-        else
-            forget(states[h]);
+        if (touched[h]) {
+            hands[h].state->X_WT = hands[h].state->metric.moved(hands[h].state->X_WG, balance.motionOf(h));
+            hands[h].state->balanced = true;
+        } else {
+            forget(*hands[h].state);
+        }
     for (std::size_t i = 1; i < count; ++i)
         for (std::size_t k = i; k > 0 && gives_way[turns[k]] > gives_way[turns[k - 1]]; --k)
             std::swap(turns[k], turns[k - 1]);
     return turns;
 }
 
-BalanceMemory balanceMemory(std::span<const HandModel> models) {
+BalanceMemory balanceMemory(const TickModel& model) {
     BalanceMemory memory;
-    const bool any = std::any_of(models.begin(), models.end(), [](const HandModel& model) {
-        return !model.moving.empty() && model.hasProxy() && model.contact.method != scene::ContactMethod::Penalty;
-    });
+    const auto meets = [](const HandModel& hand) {
+        return hand.meetsHands() && hand.hasProxy() && hand.contact.method != scene::ContactMethod::Penalty;
+    };
+    bool any = std::any_of(model.hands.begin(), model.hands.end(), meets);
+    for (const auto& of_hand : model.carrying) any = any || std::any_of(of_hand.begin(), of_hand.end(), meets);
     if (any) memory.contacts.resize(kMostBalanced);
     return memory;
 }

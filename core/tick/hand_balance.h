@@ -58,16 +58,23 @@ struct BalanceMemory {
 inline constexpr std::size_t kMostBalanced = 512;
 
 struct HandState;
+struct TickModel;
+
+/// A hand of a tick: its model with what it holds, and its state.
+struct HandInTick {
+    const HandModel* model = nullptr;
+    HandState* state = nullptr;
+};
 
 /// The order of the hands' turns in a tick.
 using Turns = std::array<std::size_t, scene::kMostHands>;
 
 /// Sets each hand's HeldTarget from where the hands are, with what hangs from them, and says in which order they go:
 /// `first` and those after it, but for who gives way. rt-safe.
-Turns balanceHands(std::span<const HandModel> models, std::span<HandState> states, std::span<const Pose> X_WH,
-                   std::size_t first, BalanceMemory& memory) noexcept;
+Turns balanceHands(std::span<const HandInTick> hands, std::span<const Pose> X_WH, std::size_t first,
+                   BalanceMemory& memory) noexcept;
 
-/// Memory for the balance of these hands.
-BalanceMemory balanceMemory(std::span<const HandModel> models);
+/// Memory for the balance of a scene's hands.
+BalanceMemory balanceMemory(const TickModel& model);
 
 }  // namespace passung::tick

@@ -12,6 +12,8 @@ namespace passung::tick {
 
 namespace {
 
+constexpr double kEmptyHandRadius = 0.05;  // [m]: about a hand's
+
 /// Shares of a cell, or less, so that no more overlap than `most` is accepted [m].
 ProxyMargins marginsOf(const HandModel& model, const ProxyMargins& share, double most) {
     const double s = std::min(model.finest_cell, most / share.accept);
@@ -46,7 +48,7 @@ void addObstacles(HandModel& model, const World& world) {
     for (std::size_t i = 0; i < world.bodies.size(); ++i) {
         if (i == model.body) continue;
         const Body& body = world.bodies[i];
-        (body.held ? model.moving : model.resting).push_back(static_cast<std::uint32_t>(model.obstacles.size()));
+        (body.moves ? model.moving : model.resting).push_back(static_cast<std::uint32_t>(model.obstacles.size()));
         model.obstacles.push_back({.body = i,
                                    .field = body.field,
                                    .shell = two_way ? body.shell : nullptr,
@@ -129,7 +131,7 @@ geometry::NearList nearListOf(const HandModel& model, double beyond) {
     std::vector<geometry::NearPart> parts;
     for (const Obstacle& obstacle : model.obstacles) {
         const Body& body = model.bodies[obstacle.body];
-        geometry::NearPart& part = parts.emplace_back(geometry::NearPart{body.box, body.X_WP_start, body.held});
+        geometry::NearPart& part = parts.emplace_back(geometry::NearPart{body.box, body.X_WP_start, false});
         const double more = beyond + (body.field != nullptr ? body.field->sheetOffset() : 0.0);
         part.box.low.array() -= more;
         part.box.high.array() += more;
@@ -139,11 +141,14 @@ geometry::NearList nearListOf(const HandModel& model, double beyond) {
     return near;
 }
 
-HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size_t hand) {
+HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size_t hand, std::size_t body,
+                        bool follows) {
     const scene::SceneSpec& spec = scene.spec;
     HandModel model;
     model.bodies = world.bodies;
-    model.body = spec.heldBy(hand);
+    model.body = body;
+    model.follows = follows;
+    model.has_others = spec.handCount() > 1;
     model.geometry = world.geometry;
     model.contact = spec.contact;
     const scene::HandSpec device = spec.hand(hand);
@@ -153,18 +158,22 @@ HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size
     model.effects = spec.effects;
     model.record_hand_depth = spec.record_hand_depth;
     model.display_wrench = spec.display_wrench;
-    const Body& held = world.bodies[model.body];
-    model.X_WG_start = held.X_WP_start;
-    addHeld(model, held);
-    addObstacles(model, world);
-    if (!world.still_surface.empty()) model.still_surface = &world.still_surface.front();
-    model.first_triangles = world.first_triangles;
-    model.finest_cell = finestCellOf(model);
-    addFriction(model, scene);
-    addGravity(model, scene);
     const double ratio = spec.contact.rotational_stiffness / spec.contact.stiffness;
-    model.metric_radius = ratio > 0.0 ? std::sqrt(ratio) : std::max(gyrationRadius(model, scene), 1e-6);
-    model.margins = marginsOf(model);
+    model.metric_radius = std::sqrt(ratio);
+    model.X_WG_start = model.hasPart() ? world.bodies[body].X_WP_start : model.start_gate.X_WH;
+    if (model.hasPart()) {
+        addHeld(model, world.bodies[body]);
+        addObstacles(model, world);
+        if (!world.still_surface.empty()) model.still_surface = &world.still_surface.front();
+        model.first_triangles = world.first_triangles;
+        model.finest_cell = finestCellOf(model);
+        addFriction(model, scene);
+        addGravity(model, scene);
+        if (!(ratio > 0.0)) model.metric_radius = std::max(gyrationRadius(model, scene), 1e-6);
+        model.margins = marginsOf(model);
+    } else if (!(ratio > 0.0)) {
+        model.metric_radius = kEmptyHandRadius;
+    }
     addStages(model, AllStages{});
     return model;
 }

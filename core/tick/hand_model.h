@@ -30,10 +30,12 @@ struct ProxyMargins {
     double accept = 0.0;   // after a step: more, and it is taken back
 };
 
-/// A hand with the part that it holds: what does not change while a trial runs. Borrows the world.
+inline constexpr std::size_t kNoBody = ~std::size_t{0};
+
+/// A hand with a part that it holds, or with none: what does not change while a trial runs. Borrows the world.
 struct HandModel {
     std::span<const Body> bodies;  // World::bodies
-    std::size_t body = 0;          // that it holds, among them
+    std::size_t body = kNoBody;    // that it holds, among them
     scene::Geometry geometry = scene::Geometry::Field;
     // Geometry::Field only
     const shell::SphereTree* shell = nullptr;
@@ -45,8 +47,10 @@ struct HandModel {
     const geometry::ClusterTree* still_surface = nullptr;  // of all obstacles that rest, in the world; may be null
     std::span<const std::uint32_t> first_triangles;        // in that, of each of `resting`
     std::vector<Obstacle> obstacles;                       // in the order of the scene
-    std::vector<std::uint32_t> resting;                    // those of them that nobody holds
-    std::vector<std::uint32_t> moving;                     // those of them that other hands hold
+    std::vector<std::uint32_t> resting;                    // those of them that rest for good, ascending
+    std::vector<std::uint32_t> moving;                     // those of them that hands hold or may pick up, ascending
+    bool has_others = false;                               // other hands may hold some of them meanwhile
+    bool follows = false;                    // another hand holds the part too, and moves it: followed_part.h
     std::vector<motion::Friction> friction;  // of each obstacle with the held part; empty: the scene names none
     Pose X_WG_start;
     scene::ContactSpec contact;
@@ -65,14 +69,17 @@ struct HandModel {
     bool record_hand_depth = true;
     bool display_wrench = true;
 
+    bool hasPart() const noexcept { return body != kNoBody; }
     bool hasObstacles() const noexcept { return !obstacles.empty(); }
+    /// Parts in other hands may move while this one's does.
+    bool meetsHands() const noexcept { return has_others && !moving.empty(); }
     bool rendersAtHand() const noexcept { return hasObstacles() && contact.rendersAtHand(); }
     /// Of a god object, or a tool.
     bool hasProxy() const noexcept { return hasObstacles() && !contact.rendersAtHand(); }
-    bool hasClosedForm() const noexcept { return hasProxy() && geometry == scene::Geometry::ClosedForm; }
-    bool hasSurfaces() const noexcept { return hasProxy() && geometry == scene::Geometry::Surface; }
+    bool hasClosedForm() const noexcept { return hasProxy() && !follows && geometry == scene::Geometry::ClosedForm; }
+    bool hasSurfaces() const noexcept { return hasProxy() && !follows && geometry == scene::Geometry::Surface; }
     /// A proxy or tool among distance fields.
-    bool hasFieldProxy() const noexcept { return hasProxy() && geometry == scene::Geometry::Field; }
+    bool hasFieldProxy() const noexcept { return hasProxy() && !follows && geometry == scene::Geometry::Field; }
     bool hasFieldProxyOf(scene::ContactMethod method) const noexcept {
         return hasFieldProxy() && contact.method == method;
     }
@@ -88,9 +95,10 @@ struct HandModel {
 /// What contact is computed by, for a stage that another one stands for.
 const char* contactInstead(const HandModel& model) noexcept;
 
-/// What the scene fixes for hand `hand`, and those of AllStages that it needs. `world` is the scene's and outlives the
-/// result. @pre `hand` < scene.spec.handCount()
-HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size_t hand);
+/// What the scene fixes for hand `hand` with part `body`, or kNoBody, which perhaps `follows` another hand, and those
+/// of AllStages that it needs. `world` is the scene's and outlives the result. @pre `hand` < scene.spec.handCount()
+HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size_t hand, std::size_t body,
+                        bool follows = false);
 
 /// Its obstacles, with boxes that are `beyond` larger on every side, as far as sheets are felt in front of them too
 /// [m].

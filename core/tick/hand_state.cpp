@@ -19,7 +19,7 @@ void addQueryMemory(const HandModel& model, Proxy& proxy, QueryMemory& memory) {
         return shell.points().size() + 2 * shell.nodes().size() + edges.stations().size();
     };
     std::size_t points = 0, both = 0;  // of the largest obstacle's
-    std::size_t nodes = model.shell->nodes().size();
+    std::size_t nodes = model.hasPart() ? model.shell->nodes().size() : 0;
     for (const Obstacle& obstacle : model.obstacles) {
         if (obstacle.shell == nullptr) continue;
         points = std::max(points, obstacle.shell->points().size());
@@ -49,19 +49,17 @@ void addQueryMemory(const HandModel& model, Proxy& proxy, QueryMemory& memory) {
 HandState makeHandState(const HandModel& model) {
     HandState state;
     for (const Obstacle& obstacle : model.obstacles) state.X_WO.push_back(model.bodies[obstacle.body].X_WP_start);
-    for (const std::uint32_t i : model.moving) {
-        state.X_WO_known.push_back(state.X_WO[i]);
-        state.X_WO_begin.push_back(state.X_WO[i]);
-    }
+    if (!model.moving.empty()) state.X_WO_known = state.X_WO;
     state.X_DG = model.registration.X_DH;
     state.X_WT = model.X_WG_start;
     state.metric = motion::Metric{model.metric_radius};
-    if (!model.moving.empty()) state.from_hands.resize(model.obstacles.size());
+    if (model.meetsHands()) state.from_hands.resize(model.obstacles.size());
     state.engaged = model.start_gate.hold_ticks <= 0;
     state.X_WG = state.step.X_WT_followed = model.X_WG_start;
     state.pairs.resize(model.bodies.size() + 1);
     state.last_shares.resize(state.pairs.size());
     state.pushes.resize(model.bodies.size());
+    state.shared_pressures.resize(model.bodies.size());
     if (model.limits.delay_ticks > 0)
         state.push_line.assign(static_cast<std::size_t>(model.limits.delay_ticks) + 1,
                                FewOfMany<Wrench>(state.pushes.size()));
@@ -73,5 +71,17 @@ HandState makeHandState(const HandModel& model) {
         addQueryMemory(model, state, state);
     return state;
 }
+
+namespace {
+
+template <class... Part>
+void swapAll(HandState& hand, Parts<Part...>& part) noexcept {
+    using std::swap;
+    (swap(static_cast<Part&>(hand), static_cast<Part&>(part)), ...);
+}
+
+}  // namespace
+
+void swapParts(HandState& hand, PartState& part) noexcept { swapAll(hand, part); }
 
 }  // namespace passung::tick

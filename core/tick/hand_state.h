@@ -6,6 +6,7 @@
 #include "core/tick/common_way.h"
 #include "core/tick/contact_energy.h"
 #include "core/tick/energy_account.h"
+#include "core/tick/followed_part.h"
 #include "core/tick/god_object.h"
 #include "core/tick/god_object_heuristic.h"
 #include "core/tick/grip.h"
@@ -39,7 +40,7 @@ using AllStages = StageList<kInputGuard, kEnergyAccount, kStartGate, kWeight,   
                             kClosedFormProxy, kClosedFormFilter, kClosedFormCommonWay,  // god objects on closed forms
                             kClosedFormRecord, kClosedFormDepth,                        // what follows them
                             kSurfaceProxy, kSurfaceRecord, kSurfaceDepth,               // the same on surfaces
-                            kVirtualCoupling,                                           // their wrench
+                            kFollowedPart, kVirtualCoupling,                            // their wrench
                             kHeldPushes,
                             kTransients,                                                        // effects
                             kContactShares, kWeightInHand, kOutputDelay, kPassivityController,  // what goes out
@@ -47,12 +48,20 @@ using AllStages = StageList<kInputGuard, kEnergyAccount, kStartGate, kWeight,   
 
 /// Everything of a hand that a tick carries to the next: the stages' own states. Sized by makeHandState; a tick never
 /// allocates.
-struct HandState : Parts<ObstaclePoses, HeldTarget, Grip, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion,
-                         ProxyFilter, ClosedFormHold, FilteredHold, ClosedFormMemory, SurfaceFollow, HandVelocity,
-                         ToolMotion, Stretch, Hang, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
+struct HandState : Parts<ObstaclePoses, HeldTarget, Grip, FollowedPart, InputGuard, Engagement, EnergyAccounts, Proxy,
+                         ProxyMotion, ProxyFilter, ClosedFormHold, FilteredHold, ClosedFormMemory, SurfaceFollow,
+                         HandVelocity, ToolMotion, Stretch, Hang, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {
+};
+
+/// What of it goes with the part: waits where nobody holds it.
+struct PartState : Parts<ObstaclePoses, HeldTarget, Proxy, ProxyMotion, ProxyFilter, ClosedFormHold, FilteredHold,
+                         ClosedFormMemory, SurfaceFollow, ToolMotion, QueryMemory> {};
 
 /// The state before the first tick, with all memory that the ticks will need.
 HandState makeHandState(const HandModel& model);
+
+/// Exchanges what goes with the part. rt-safe.
+void swapParts(HandState& hand, PartState& part) noexcept;
 
 /// Runs a stage on its parts. rt-safe.
 template <const auto& stage>

@@ -80,6 +80,7 @@ contact::QueryAnswer queryObstacles(const HandModel& model, const ObstaclePoses&
         (*pushes)[place].wrench.force += answer.load.force;
         (*pushes)[place].wrench.torque += answer.load.torque;
     };
+    obstacles.place(lookout.near);
     if (known) lookout.known.begin();
     for (const std::uint32_t place :
          lookout.near.within(X_WS, lookReach(std::max(request.collect_below, request.search_below)))) {

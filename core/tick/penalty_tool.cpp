@@ -85,7 +85,7 @@ public:
             motion::Motion b = open;
             for (const contact::ContactPoint& contact : contacts) {
                 const double depth = -contact.phi;
-                const motion::Motion a = metric_.rowOf(X_WG, contact.position, contact.gradient);
+                const motion::Motion a = metric_.at(X_WG).rowOf(contact.position, contact.gradient);
                 const double sigma =
                     scale_ * (law_.variant == scene::PenaltyVariant::AreaWeighted ? contact.area : 1.0);
                 if (depth > 0.0) b -= sigma * depth * a;

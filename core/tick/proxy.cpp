@@ -114,17 +114,17 @@ bool lookAround(const ProxyView& view, const Pose& X_WG, double reach, double se
 }
 
 void noteObstacles(const ProxyView& view) noexcept {
-    const auto& moving = view.model.moving;
-    for (std::size_t i = 0; i < moving.size(); ++i) view.proxy.X_WO_known[i] = view.obstacles.X_WO[moving[i]];
+    for (const auto& in_hand : view.obstacles.inHands())
+        view.proxy.X_WO_known[in_hand.obstacle] = view.obstacles.X_WO[in_hand.obstacle];
 }
 
 void forgetMoved(const ProxyView& view) noexcept {
     const auto& [model, proxy, memory, report, obstacles] = view;
     double nearer = 0.0;
     bool touched = false;
-    for (std::size_t i = 0; i < model.moving.size(); ++i) {
-        const std::uint32_t obstacle = model.moving[i];
-        const Pose &before = proxy.X_WO_known[i], &now = obstacles.X_WO[obstacle];
+    for (const auto& in_hand : obstacles.inHands()) {
+        const std::uint32_t obstacle = in_hand.obstacle;
+        const Pose &before = proxy.X_WO_known[obstacle], &now = obstacles.X_WO[obstacle];
         if (now.p == before.p && now.q.coeffs() == before.q.coeffs()) continue;
         const Pose back = before * now.inverse();
         const double around = model.reach + std::max(0.0, proxy.clearance_bound);
@@ -220,8 +220,7 @@ double longestPath(const MovingProxy& moving, const motion::Motion& u) noexcept 
 }
 
 motion::Surroundings surroundings(const MovingProxy& moving) noexcept {
-    const motion::Metric& metric = moving.target.metric;
-    return {moving.proxy.manifold, metric.centre(moving.proxy.X_WG), metric.radius, -moving.model.margins.keep};
+    return {moving.proxy.manifold, moving.target.metric.at(moving.proxy.X_WG), -moving.model.margins.keep};
 }
 
 AllowedMotion allowedMotion(const MovingProxy& moving, const motion::Motion& wanted,

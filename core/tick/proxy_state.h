@@ -2,6 +2,7 @@
 
 #include <array>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "core/contact/contact_query.h"
@@ -18,9 +19,24 @@ namespace passung::tick {
 struct ObstaclePoses {
     static constexpr bool kOnlyRead = true;
     std::vector<Pose> X_WO;
-    // When the tick began, of HandModel::moving and of the held part: some hands have had their turn since
-    std::vector<Pose> X_WO_begin;
-    Pose X_WG_begin;
+    /// One that another hand holds, or has let go at the end of the last tick.
+    struct Carried {
+        std::uint32_t obstacle = 0;
+        Pose X_WO_begin;     // when the tick began: some hands have had their turn since
+        bool rests = false;  // it is not held any more
+    };
+    std::array<Carried, 2 * (scene::kMostHands - 1)> carried;  // the first `carried_count`
+    std::size_t carried_count = 0;
+    Pose X_WG_begin;  // of the held part, likewise
+
+    std::span<const Carried> inHands() const noexcept { return {carried.data(), carried_count}; }
+    /// Tells `near` where they are. rt-safe.
+    void place(geometry::NearList& near) const noexcept {
+        for (const Carried& in_hand : inHands()) {
+            near.carry(in_hand.obstacle, X_WO[in_hand.obstacle]);
+            if (in_hand.rests) near.rest(in_hand.obstacle);
+        }
+    }
 };
 
 /// Where the held part is asked to go, and what pushes it there beside its hand: the hand's pose, or where a part with
@@ -30,11 +46,22 @@ struct HeldTarget {
     static constexpr bool kOnlyRead = true;
     Pose X_WT;
     motion::Metric metric;                // by which the way there is measured: where the hand holds the part
+    int springs = 1;                      // of hands that draw it there: 2 where two hold it (pick.h), with these
+    motion::TwoSprings two_springs;       // and X_WT where they rest
+    bool balanced = false;                // X_WT is where they balance with other hands' parts (hand_balance.h)
     FewOfMany<ObstaclePush> from_hands;   // of each obstacle, as Pushes; empty where no other hand is
     std::uint32_t contacts_of_hands = 0;  // that push so
     std::uint32_t work = 0;               // that the proxy's way may take in this tick, of what all hands have
     Pose X_WH_before;                     // the hand in the tick before, where there are several
     double others_way = 0.0;              // that the other hands went since then, together [m]
+
+    /// What is to be followed in place of X_WT; null: X_WT.
+    const motion::TwoSprings* twoSprings() const noexcept { return springs > 1 && !balanced ? &two_springs : nullptr; }
+    /// The motion that is asked for with the part at `X`.
+    motion::Motion wantedAt(const Pose& X) const noexcept {
+        const motion::TwoSprings* two = twoSprings();
+        return two != nullptr ? two->wantedAt(metric, X) : metric.between(X, X_WT);
+    }
 };
 
 /// A look from a pose under a budget of nodes, and how far it has come (field_look.h).
@@ -81,7 +108,7 @@ struct Proxy {
     std::size_t cuts = 0;
     int tried = 0;
     double lag = std::numeric_limits<double>::quiet_NaN();  // ContactRecord::proxy_lag
-    std::vector<Pose> X_WO_known;  // of HandModel::moving: where they were when this was looked up
+    std::vector<Pose> X_WO_known;  // where obstacles that move were when this was looked up; empty where none does
     SuspendedStep step;            // under a budget of nodes
 };
 

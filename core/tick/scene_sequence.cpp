@@ -54,6 +54,7 @@ std::vector<SparedStage> SceneModels::spared(std::size_t i) const {
     std::erase_if(spared, [&](const SparedStage& stage) {
         return std::any_of(run.begin(), run.end(), [&](const Stage& other) { return other.name == stage.name; });
     });
+    if (!models_[i].picks()) spared.push_back({"picking up", "effects.pick is not set: hands keep what they hold"});
     return spared;
 }
 
@@ -86,7 +87,7 @@ std::vector<PairAccount> SceneSequence::pairs() const {
         for (std::size_t hand = 0; hand < model.hands.size(); ++hand) {
             const auto& pairs = states_[turn].hands[hand].pairs;
             for (std::size_t i = 0; i < pairs.size(); ++i)
-                if (i != model.hands[hand].body) all.push_back(pairs[i]);
+                if (i != model.hands[hand].body || model.canPick(hand)) all.push_back(pairs[i]);
         }
     }
     return all;

@@ -80,31 +80,73 @@ std::uint32_t workDone(const HandModel& model, const TickFrame& frame) noexcept 
     return model.hasSurfaces() ? frame.nodes_visited : frame.work;
 }
 
+/// The parts that other hands hold, or have just let go, as the tick begins.
+void noteOthers(const HandModel& model, const TickState& whole, std::size_t hand, HandState& state) noexcept {
+    state.carried_count = 0;
+    if (!model.meetsHands() || model.follows) return;
+    state.X_WG_begin = whole.X_WP[model.body];
+    const auto isHeld = [&](std::size_t body) {
+        return std::any_of(whole.holds.begin(), whole.holds.end(), [=](const Hold& h) { return h.body == body; });
+    };
+    const auto add = [&](std::size_t body, bool rests) {
+        const auto obstacle = static_cast<std::uint32_t>(body < model.body ? body : body - 1);
+        std::size_t at = state.carried_count++;
+        for (; at > 0 && state.carried[at - 1].obstacle > obstacle; --at) state.carried[at] = state.carried[at - 1];
+        state.carried[at] = {obstacle, whole.X_WP[body], rests};
+    };
+    for (std::size_t other = 0; other < whole.holds.size(); ++other) {
+        if (other == hand) continue;
+        const Hold& hold = whole.holds[other];
+        if (hold.body != kNoBody && hold.body != model.body && !hold.follows) add(hold.body, false);
+        if (hold.let_go != kNoBody && !isHeld(hold.let_go)) add(hold.let_go, true);
+    }
+}
+
 /// Where the hand is.
-std::size_t sense(const HandModel& model, TickState& whole, HandState& state, const DeviceReading& reading,
+std::size_t sense(const HandModel& model, TickState& whole, std::size_t hand, const DeviceReading& reading,
                   TickFrame& frame, const StageWatch* watch) noexcept {
+    HandState& state = whole.hands[hand];
     frame = TickFrame{};
     frame.reading = reading;
-    for (std::size_t i = 0; i < model.moving.size(); ++i)
-        state.X_WO_begin[i] = whole.X_WP[model.obstacles[model.moving[i]].body];
-    if (!model.moving.empty()) state.X_WG_begin = whole.X_WP[model.body];
+    noteOthers(model, whole, hand, state);
     const std::size_t next = runStages(model, state, frame, 0, true, watch);
     // Parts without a proxy are where their hands are, each for the others too.
     if (state.engaged && model.rendersAtHand()) whole.X_WP[model.body] = frame.X_WH;
     return next;
 }
 
+/// Two hands' springs on one part, and where it would rest. The first one's state takes them.
+void drawTogether(const HandModel& model, HandState& first, const Pose& X_WH, const HandState& second,
+                  const Pose& X_WH_second) noexcept {
+    first.two_springs = {.springs = {{{X_WH, first.p_GC}, {X_WH_second, second.p_GC}}},
+                         .load = model.weight / model.contact.stiffness,
+                         .p_GM = model.centre};
+    first.X_WT = first.two_springs.restFrom(first.metric, first.X_WG);
+}
+
+/// What the second of two hands learns of the part after the first one's turn.
+void share(const HandState& first, const TickFrame& frame, HandState& second) noexcept {
+    FollowedPart& shared = second;
+    shared.X_WShared = first.X_WG;
+    shared.shared_record = frame;
+    shared.shared_pressures.clear();
+    for (const std::uint32_t i : first.pushes.held())
+        if (first.pushes[i].pressure > 0.0) shared.shared_pressures[i] = first.pushes[i].pressure;
+}
+
 /// One hand's turn.
 void takeTurn(const HandModel& model, TickState& whole, HandState& state, std::size_t next, TickOutput& output,
               const StageWatch* watch) noexcept {
-    for (const std::uint32_t i : model.moving) state.X_WO[i] = whole.X_WP[model.obstacles[i].body];
+    for (const ObstaclePoses::Carried& in_hand : state.inHands())
+        state.X_WO[in_hand.obstacle] = whole.X_WP[model.obstacles[in_hand.obstacle].body];
     TickFrame& frame = output.frame;
     runStages(model, state, frame, next, false, watch);
     if (state.engaged) frame.status |= kEngaged;
     if (frame.reading.periods > 1) frame.status |= kOverrun;
-    whole.X_WP[model.body] = state.X_WG;
+    if (model.hasPart() && !model.follows) whole.X_WP[model.body] = state.X_WG;
     output.F_D_B = frame.F_D_B;
     output.X_WG = state.X_WG;
+    output.held = model.hasPart() ? static_cast<std::int32_t>(model.body) : kNoPart;
 }
 
 }  // namespace
@@ -113,23 +155,42 @@ void step(const TickModel& model, TickState& state, std::span<const DeviceReadin
           std::span<TickOutput> outputs, const StageWatch* watch) noexcept {
     const std::size_t count = model.hands.size();
     std::array<std::size_t, scene::kMostHands> next{};
+    std::array<HandInTick, scene::kMostHands> all{};
     std::array<Pose, scene::kMostHands> X_WT;  // where each part would be without the others
     for (std::size_t i = 0; i < count; ++i) {
-        next[i] = sense(model.hands[i], state, state.hands[i], readings[i], outputs[i].frame, watch);
-        X_WT[i] = model.hands[i].hasWeight() ? state.hands[i].X_WR : outputs[i].frame.X_WH;
+        all[i] = {&model.hand(i, state.holds[i].body, state.holds[i].follows), &state.hands[i]};
+        next[i] = sense(*all[i].model, state, i, readings[i], outputs[i].frame, watch);
+        X_WT[i] = all[i].model->hasWeight() ? state.hands[i].X_WR : outputs[i].frame.X_WH;
     }
+    for (std::size_t i = 0; i < count; ++i) {
+        const Hold& hold = state.holds[i];
+        if (hold.partner == Hold::kNoHand || hold.follows) continue;
+        drawTogether(*all[i].model, state.hands[i], outputs[i].frame.X_WH, state.hands[hold.partner],
+                     outputs[hold.partner].frame.X_WH);
+        X_WT[i] = state.hands[i].X_WT;
+    }
+    const auto hands = std::span(all).first(count);
     const std::size_t first = static_cast<std::size_t>(state.tick) % count;
-    const Turns turns = balanceHands(model.hands, state.hands, std::span(X_WT).first(count), first, state.balance);
+    const Turns turns = balanceHands(hands, std::span(X_WT).first(count), first, state.balance);
     std::uint32_t spared = 0;  // by those who had their turn
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t hand = turns[i];
-        const HandModel& own = model.hands[hand];
+        const HandModel& own = *hands[hand].model;
+        if (own.follows) continue;  // after its partner
         const std::uint32_t work = mostWork(own) / static_cast<std::uint32_t>(count) + spared;
         state.hands[hand].work = work;
         takeTurn(own, state, state.hands[hand], next[hand], outputs[hand], watch);
         spared = work - std::min(work, workDone(own, outputs[hand].frame));
+        const std::size_t partner = state.holds[hand].partner;
+        if (partner == Hold::kNoHand) continue;
+        share(state.hands[hand], outputs[hand].frame, state.hands[partner]);
+        takeTurn(*hands[partner].model, state, state.hands[partner], next[partner], outputs[partner], watch);
     }
-    for (const TickOutput& output : outputs) mixOutputs(state.hash, output.frame, output.X_WG);
+    for (const TickOutput& output : outputs) {
+        mixOutputs(state.hash, output.frame, output.X_WG);
+        if (model.picks()) mix(state.hash, static_cast<std::uint64_t>(output.held));
+    }
+    if (model.picks()) pickAndLetGo(model, state, readings, outputs);
     ++state.tick;
 }
 
@@ -165,6 +226,7 @@ TickRecord makeRecord(std::int64_t tick, const DeviceReading& reading, const Tic
     record.iterations = frame.iterations;
     record.nodes_visited = frame.nodes_visited;
     record.hand_energy_J = static_cast<float>(reading.hand_energy_J);
+    record.held = output.held;
     return record;
 }
 

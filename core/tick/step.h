@@ -20,9 +20,10 @@ struct TickFrame : Parts<Reading, HandSample, AreaLoad, ContactRecord, HandDepth
 
 /// What one tick gives back: exact values, before they are rounded into a record.
 struct TickOutput {
-    Wrench F_D_B;     // to be commanded
-    TickFrame frame;  // everything else
-    Pose X_WG;        // proxy of the held part
+    Wrench F_D_B;                 // to be commanded
+    TickFrame frame;              // everything else
+    Pose X_WG;                    // proxy of the held part
+    std::int32_t held = kNoPart;  // which part that is, in the order of the scene
 };
 
 /// Who is told after every stage of a tick that it has run for a hand, to measure what it costs. @pre `after` is
@@ -35,7 +36,8 @@ struct StageWatch {
 /// One tick of the haptic loop: a plain function over values (tick_model.h, tick_state.h). Same model, state and
 /// readings: same bits.
 ///   The hands take turns, in an order that goes round from tick to tick. Each walks its model's stages; each of these
-/// sees the parts of state and frame that it declares (stage.h). While one hand's part moves all other parts rest.
+/// sees the parts of state and frame that it declares (stage.h). While one hand's part moves all other parts rest. At
+/// its end hands may pick parts up and let them go (pick.h).
 /// Nothing allocates, locks or throws, and every loop has a bound. rt-safe.
 /// @pre a reading and an output for each hand
 void step(const TickModel& model, TickState& state, std::span<const DeviceReading> readings,

@@ -22,6 +22,11 @@ void noteRows(const HandModel& model, const HeldTarget& target, const surface::S
 
 }  // namespace
 
+std::size_t surfaceBodyOf(const HandModel& model, std::uint32_t obstacle) noexcept {
+    const auto at = std::lower_bound(model.moving.begin(), model.moving.end(), obstacle);
+    return static_cast<std::size_t>(at - model.moving.begin()) + (model.still_surface != nullptr ? 1 : 0);
+}
+
 std::size_t obstacleOf(const HandModel& model, const surface::SurfaceProxy& surface,
                        const surface::ContactRow& row) noexcept {
     const std::size_t still = model.still_surface != nullptr ? 1 : 0;
@@ -52,14 +57,13 @@ SurfaceFollow surfaceFollow(const HandModel& model) {
 void followOnSurface(const HandModel& model, const HandSample& hand, const HeldTarget& target,
                      const ObstaclePoses& obstacles, Proxy& proxy, SurfaceFollow& follow, Pushes& pushes,
                      Report& report) noexcept {
-    const std::size_t still = model.still_surface != nullptr ? 1 : 0;
-    for (std::size_t k = 0; k < model.moving.size(); ++k)
-        follow.surface->moveBody(still + k, obstacles.X_WO[model.moving[k]]);
+    for (const ObstaclePoses::Carried& in_hand : obstacles.inHands())
+        follow.surface->moveBody(surfaceBodyOf(model, in_hand.obstacle), obstacles.X_WO[in_hand.obstacle]);
     follow.surface->setBudget(static_cast<int>(target.work));
-    if (!model.moving.empty()) follow.surface->setHands(hand.X_WH, target.others_way);
+    if (model.meetsHands()) follow.surface->setHands(hand.X_WH, target.others_way);
     // A spring from the old place would throw the hand across the room.
     if (hand.relocated) follow.surface->place(hand.X_WH);
-    const surface::SurfaceTick& now = follow.surface->advance(target.X_WT);
+    const surface::SurfaceTick& now = follow.surface->advance(target.X_WT, target.twoSprings());
     follow.gap = now.gap;
     follow.contacts = static_cast<std::uint32_t>(now.active);
     proxy.X_WG = now.X_WG;

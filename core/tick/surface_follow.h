@@ -30,6 +30,8 @@ struct SurfaceFollow {
     std::uint32_t contacts = 0;  // that hold it
 };
 
+/// Which body of the surface proxy an obstacle is that moves. rt-safe.
+std::size_t surfaceBodyOf(const HandModel& model, std::uint32_t obstacle) noexcept;
 /// Which obstacle a row is of. rt-safe.
 std::size_t obstacleOf(const HandModel& model, const surface::SurfaceProxy& surface,
                        const surface::ContactRow& row) noexcept;

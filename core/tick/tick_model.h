@@ -8,14 +8,27 @@
 
 namespace passung::tick {
 
-/// What does not change while a trial runs: the world, and the hands in it, which borrow it.
+/// What does not change while a trial runs: the world, and the hands in it, which borrow it. A hand that picks parts up
+/// has a model for each of them.
 struct TickModel {
     TickModel() = default;
     TickModel(TickModel&&) noexcept = default;
     TickModel& operator=(TickModel&&) noexcept = default;
 
     World world;
-    std::vector<HandModel> hands;  // in the order of the scene
+    std::vector<HandModel> hands;  // in the order of the scene, as a trial begins
+    // Where parts can be picked up (pick.h): which, ascending; each hand with each of them, then with nothing; and each
+    // hand with each of them while another one holds it too
+    std::vector<std::size_t> pickable;
+    std::vector<std::vector<HandModel>> carrying, following;
+    scene::Pick pick;
+
+    bool picks() const noexcept { return !pickable.empty(); }
+    bool canPick(std::size_t hand) const noexcept { return picks() && !carrying[hand].empty(); }
+    /// Two hands can hold one part.
+    bool shares(std::size_t hand) const noexcept { return canPick(hand) && !following[hand].empty(); }
+    /// A hand with what it holds. @pre it can hold that
+    const HandModel& hand(std::size_t hand, std::size_t body, bool follows = false) const noexcept;
 };
 
 /// What the scene fixes. `scene` must outlive the result.

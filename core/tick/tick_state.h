@@ -6,6 +6,7 @@
 #include "core/base/types.h"
 #include "core/tick/hand_balance.h"
 #include "core/tick/hand_state.h"
+#include "core/tick/pick.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
@@ -14,8 +15,11 @@ namespace passung::tick {
 struct TickState {
     std::int64_t tick = 0;                     // so many so far
     std::uint64_t hash = 0xcbf29ce484222325u;  // of all outputs, exact bits
-    std::vector<Pose> X_WP;                    // of every part; a held one's is its hand's proxy
+    std::vector<Pose> X_WP;                    // of every part; of one in a hand that of its proxy
     std::vector<HandState> hands;
+    std::vector<Hold> holds;         // of each hand
+    std::vector<PartState> waiting;  // of each of TickModel::pickable; of one in a hand, what that hand has without it
+    std::vector<std::uint8_t> locked;  // of each part: nobody picks it up any more
     BalanceMemory balance;
 };
 

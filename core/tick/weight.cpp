@@ -7,9 +7,9 @@ Wrench weightOf(const HandModel& model, const Quat& R_WG) noexcept {
 }
 
 Hanging hangingOf(const HandModel& model, const Grip& grip) noexcept {
-    Hanging hanging{model.registration.X_WB.q.conjugate() * model.weight, Vec3::Zero()};
+    Hanging hanging{grip.share * (model.registration.X_WB.q.conjugate() * model.weight), Vec3::Zero()};
     const bool turns = model.limits.actuates_torque && model.limits.max_torque != 0.0;
-    if (turns) hanging.p_D = grip.X_DG * (model.hangsTurned() ? model.centre : grip.p_GC);
+    if (turns) hanging.p_D = grip.X_DG * (model.hangsTurned() && !grip.shared ? model.centre : grip.p_GC);
     return hanging;
 }
 
@@ -20,18 +20,25 @@ double liftEnergy(const Hanging& hanging, const Pose& X_BD) noexcept {
 void hangPart(const HandModel& model, const HandSample& hand, const Grip& grip, const InputGuard& guard,
               Hang& hang) noexcept {
     hang.X_WR = hand.X_WH;
-    if (!model.hasProxy() || !guard.has_good_pose) return;
+    if (!model.hasProxy() || !guard.has_good_pose || grip.shared) return;
     const scene::ContactSpec& c = model.contact;
     hang.X_WR.p += model.weight / c.stiffness;
     if (!model.hangsTurned()) return;
-    const Vec3 torque = (hand.X_WH.q * (model.centre - grip.p_GC)).cross(model.weight);
-    hang.X_WR.q = rotationFromVector(torque / c.rotational_stiffness) * hand.X_WH.q;
+    Vec3 turn = (hand.X_WH.q * (model.centre - grip.p_GC)).cross(model.weight) / c.rotational_stiffness;
+    if (const double angle = turn.norm(); angle > scene::kMostHangingTurn) turn *= scene::kMostHangingTurn / angle;
+    hang.X_WR.q = rotationFromVector(turn) * hand.X_WH.q;
     hang.X_WR.q.normalize();
     hang.X_WR.p += grip.leverOf(hand.X_WH.q) - grip.leverOf(hang.X_WR.q);
 }
 
 void addWeight(const HandModel& model, const HandSample& hand, const Grip& grip, const Proxy& proxy, const Hang& hang,
                Pushes& pushes, HandWrench& wrench, Report& report) noexcept {
+    report.status |= kWeighed;
+    if (grip.shared) {  // the spring holds it
+        const Vec3 share = grip.share * model.weight;
+        if (hand.input_usable) pushes.pushes.back().wrench = {share, grip.leverOf(hand.X_WH.q).cross(share)};
+        return;
+    }
     Wrench weight = weightOf(model, hand.X_WH.q);
     if (model.hasProxy()) {
         const Vec3 from_hand = rotationVector(proxy.X_WG.q * hand.X_WH.q.conjugate());
@@ -42,7 +49,6 @@ void addWeight(const HandModel& model, const HandSample& hand, const Grip& grip,
     pushes.pushes.back().wrench = hand.input_usable ? weight : Wrench{};
     wrench.F_H_W.force += weight.force;
     wrench.F_H_W.torque += weight.torque;
-    report.status |= kWeighed;
 }
 
 }  // namespace passung::tick

@@ -27,12 +27,25 @@ Body bodyOf(const scene::Part& part, scene::Geometry geometry, World& world) {
     return body;
 }
 
-/// The triangles of all that rest.
+/// What hands close on.
+void addFaces(World& world, const scene::Scene& scene, const std::vector<const scene::Part*>& built) {
+    std::vector<const geometry::TriangleTree*> faces(built.size());
+    world.faces.reserve(built.size());
+    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+        if (!scene.spec.parts[i].pickable) continue;
+        const auto at = std::lower_bound(built.begin(), built.end(), scene.parts[i].get()) - built.begin();
+        const geometry::TriangleTree*& tree = faces[static_cast<std::size_t>(at)];
+        if (tree == nullptr) tree = &world.faces.emplace_back(scene.parts[i]->mesh);
+        world.bodies[i].faces = tree;
+    }
+}
+
+/// The triangles of all that rest for good.
 void addStillSurface(World& world) {
     std::vector<geometry::PlacedTree> still;
     std::size_t triangles = 0;
     for (const Body& body : world.bodies) {
-        if (body.held) continue;
+        if (body.moves) continue;
         still.push_back({body.surface, body.X_WP_start});
         world.first_triangles.push_back(static_cast<std::uint32_t>(triangles));
         triangles += body.surface->triangleCount();
@@ -58,8 +71,9 @@ World makeWorld(const scene::Scene& scene) {
         const auto at = std::lower_bound(built.begin(), built.end(), scene.parts[i].get());
         Body& body = world.bodies.emplace_back(bodies[static_cast<std::size_t>(at - built.begin())]);
         body.X_WP_start = scene.spec.parts[i].X_WP;
-        body.held = scene.spec.parts[i].held;
+        body.moves = scene.spec.parts[i].moves();
     }
+    addFaces(world, scene, built);
     if (world.geometry == scene::Geometry::Surface) addStillSurface(world);
     return world;
 }

@@ -30,7 +30,7 @@ void dropDeadFeedback(plan::Condition& condition) {
 void dropDeadWeight(scene::SceneSpec& scene) {
     bool weighs = false;
     for (scene::PartSpec& part : scene.parts) {
-        if (!part.held || scene.effects.weight.gravity.isZero(0.0)) part.density = 0.0;
+        if (!part.moves() || scene.effects.weight.gravity.isZero(0.0)) part.density = 0.0;
         weighs = weighs || part.density > 0.0;
     }
     if (!weighs) scene.effects.weight = {};

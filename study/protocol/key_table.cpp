@@ -157,6 +157,7 @@ constexpr std::array kTables{
     TableInfo{"effects.passivity_controller", "`[effects.passivity_controller]`", ""},
     TableInfo{"effects.transients", "`[effects.transients]`", ""},
     TableInfo{"effects.weight", "`[effects.weight]`", ""},
+    TableInfo{"effects.pick", "`[effects.pick]`", ""},
     TableInfo{"factor", "`[[factor]]`", ""},
     TableInfo{"level", "Levels written as tables", "A level has either a `value` or a `set`."},
     TableInfo{"task", "`[task]`", ""},

@@ -179,6 +179,7 @@ scene::PartSpec readPartNode(const Node& table, const std::string& parent_path, 
     scene::PartSpec part;
     part.name = read.text("name");
     part.held = read.boolean("held");
+    part.pickable = read.boolean("pickable");
     if (read.has("hand")) part.hand = readHand(read, part.held, other_hands);
     const double units = unitsPerMetre(read, units_per_metre);
     part.shown_offset = readPosition(read, "shown_offset", units);

@@ -20,6 +20,7 @@ std::string poseJson(const Pose& pose) {
 std::string partJson(const scene::PartSpec& part) {
     JsonObject json;
     json.text("name", part.name).boolean("held", part.held);
+    if (part.pickable) json.boolean("pickable", true);
     if (part.hand > 0) json.integer("hand", static_cast<std::int64_t>(part.hand) + 1);
     if (const auto* shape = std::get_if<shape::Shape>(&part.geometry)) {
         JsonObject shape_json;
@@ -148,6 +149,13 @@ std::string effectsJson(const scene::Effects& effects) {
                                     .str());
     if (!effects.weight.gravity.isZero(0.0))
         json.json("weight", JsonObject().json("gravity_m_per_s2", jsonVector(effects.weight.gravity)).str());
+    if (effects.picks())
+        json.json("pick", JsonObject()
+                              .number("reach_m", effects.pick.reach)
+                              .integer("button", effects.pick.button)
+                              .text("closed", effects.pick.on_press ? "on_press" : "while_down")
+                              .text("let_go", effects.pick.locks ? "lock" : "leave")
+                              .str());
     return json.str();
 }
 

@@ -342,6 +342,9 @@ private:
         if (!names_device)
             errors_.push_back(errorAt(device != nullptr ? device->place : tables.scene.place, "device.preset", "",
                                       "required in a study"));
+        if (content.scene.effects.picks())
+            errors_.push_back(errorAt(tables.scene.find("effects")->find("pick")->place, "effects.pick", "",
+                                      "is not known to any task: no type judges parts that are picked up yet"));
         condition.scene = std::move(content.scene);
         condition.accuracy_budget = content.accuracy_budget;
         condition.accuracy_line = content.accuracy_place.line;

@@ -43,7 +43,8 @@ inline constexpr std::array kSceneKeys{
     Key{"part", "mesh", Text, kAny, "", "(a shape)", "Mesh file, relative to the file that names it. The data hold its SHA-256, not its content: keep it beside the study; a replay refuses another."},
     Key{"part", "shape", Table, kAny, "", "(a mesh)", "Parametric shape."},
     Key{"part", "pose", Table, kAny, "", "(identity)", "Part to world at the start."},
-    Key{"part", "held", Boolean, kAny, "", "false", "True for a part in a hand; each hand holds one."},
+    Key{"part", "held", Boolean, kAny, "", "false", "True for a part in a hand from the start; each hand holds one, or with effects.pick none."},
+    Key{"part", "pickable", Boolean, kAny, "", "false", "True for a part that hands may pick up, and let go if held; needs effects.pick."},
     Key{"part", "hand", Name, kAny, "", "(the first)", "Name of the hand that holds the part, one of `[[hand]]`; needs held = true."},
     Key{"part", "friction", Number, from(0, 10), "", "0", "Coefficient at rest. Two parts rub with the geometric mean of theirs: 0 on either side is none. God objects only."},
     Key{"part", "sliding_friction", Number, from(0, 10), "", "(as `friction`)", "Coefficient while sliding; at most `friction`."},
@@ -153,6 +154,7 @@ inline constexpr std::array kSceneKeys{
 
     Key{"start_gate", "position_tolerance_mm", Number, from(0, 1000), "", "0", "Largest distance from the held part's start; 0 = not asked."},
     Key{"start_gate", "angle_tolerance_deg", Number, from(0, 180), "", "0", "Largest angle from the held part's start; 0 = not asked."},
+    Key{"start_gate", "pose", Table, kAny, "", "(the held part's)", "Start pose of a hand that begins with nothing; of no other."},
     Key{"start_gate", "hold_ms", Number, from(0, 10000), "", "0", "Time for which the part stays within these tolerances."},
 
     Key{"effects", "passivity_controller", Table, kAny, "", "(none)", "A damper that takes energy back where the controller gave more than it took in; the account itself is always recorded."},
@@ -160,11 +162,18 @@ inline constexpr std::array kSceneKeys{
 
     Key{"effects", "weight", Table, kAny, "", "(none)", "Weight of the held part, by its density_kg_per_m3: felt in the air, not where the part lies. The part hangs from the hand by its weight over the stiffness: `explain` says how far. It has no inertia."},
 
+    Key{"effects", "pick", Table, kAny, "", "(none)", "Hands pick parts up and let them go, by a button: a hand closes on the nearest pickable part, and the coupling holds it where the hand's point was."},
+
     Key{"effects.passivity_controller", "max_damping_Ns_per_m", Number, above(0), "", "!", "Largest damping; a mass m cannot bear more than about m / (1 ms)."},
 
     Key{"effects.transients", "amplitude_Ns_per_m", Number, above(0), "", "!", "Force of the vibration per speed of the impact. The device's limits hold for contact and vibration together."},
     Key{"effects.transients", "frequency_hz", Number, aboveUpTo(0, 400), "", "!", "Frequency of the vibration."},
     Key{"effects.transients", "decay_ms", Number, aboveUpTo(0, 1000), "", "!", "Time in which the vibration falls to 37 %."},
+
+    Key{"effects.pick", "reach_mm", Number, aboveUpTo(0, 1000), "", "!", "Largest distance of a part's surface from the hand's point, the origin of what the registration puts into the handle."},
+    Key{"effects.pick", "button", Integer, from(0, scene::kMostButtons - 1), "", "0", "Button of the device, counted from 0."},
+    Key{"effects.pick", "closed", Choice, kAny, "while_down|on_press", "while_down", "while_down: the hand is closed while the button is down. on_press: a press closes it, the next one opens it."},
+    Key{"effects.pick", "let_go", Choice, kAny, "leave|lock", "leave", "leave: a part stays where it is let go, and can be picked up again. lock: it stays there for good."},
 
     Key{"effects.weight", "gravity_m_per_s2", Vector, kAny, "", "([0, 0, -9.80665])", "Gravity along the world's axes, at most 100 long; zero: no weight."},
 };

@@ -55,6 +55,8 @@ std::vector<scene::PartSpec> readParts(const TableReader& read, const Node& scen
         parts.push_back(std::move(part));
     }
     if (!read.has("part")) return parts;
+    const Node* effects = scene.find("effects");
+    if (effects != nullptr && effects->find("pick") != nullptr) return parts;
     if (!full[0]) errors.push_back(errorAt(scene.place, read.pathOf("part"), "", "one part must be held: held = true"));
     for (std::size_t i = 0; i < other_hands.size(); ++i)
         if (!full[i + 1] && !other_hands[i].empty())
@@ -286,8 +288,8 @@ double readAccuracyBudget(const TableReader& read, const scene::SceneSpec& scene
         if (read.has(key)) read.fail(key, "is picked by accuracy = \"auto\"");
     if (read.has("two_way") && !read.boolean("two_way"))
         read.fail("two_way", "is picked by accuracy = \"auto\"; true asks for both ways whatever it picks");
-    if (scene.handCount() > 1)
-        read.fail("accuracy", "needs one hand: it picks settings for the pairs of one held part");
+    if (scene.handCount() > 1 || scene.effects.picks())
+        read.fail("accuracy", "needs one hand and no effects.pick: it picks settings for the pairs of one held part");
     else if (std::all_of(scene.parts.begin(), scene.parts.end(), [](const auto& part) { return part.held; }))
         read.fail("accuracy", "needs a part that the held one can touch");
     if (!read.has("accuracy_budget_us")) read.fail("accuracy_budget_us", "required by accuracy = \"auto\"");
@@ -302,8 +304,15 @@ scene::Registration readRegistration(const TableReader& read, double units) {
     return registration;
 }
 
-scene::StartGate readStartGate(const TableReader& read) {
+scene::StartGate readStartGate(const TableReader& read, double units, bool begins_empty, Errors& errors) {
     scene::StartGate gate;
+    if (const Node* pose = read.node("pose"))
+        gate.X_WH =
+            readPose(TableReader(*pose, {"pose"}, read.pathOf("pose"), errors), "position", "rotation_deg", units);
+    if (read.has("pose") && !begins_empty)
+        read.fail("pose", "is that of the part which the hand holds: only a hand that begins with nothing has its own");
+    if (!read.has("pose") && begins_empty && read.has("hold_ms"))
+        read.fail("hold_ms", "needs `pose`: the hand begins with nothing");
     gate.position_tolerance = read.number("position_tolerance_mm");
     gate.angle_tolerance = read.number("angle_tolerance_deg");
     gate.hold_ticks = static_cast<int>(std::lround(read.number("hold_ms") * 1000.0));
@@ -320,13 +329,15 @@ void checkHands(const TableReader& read, const TableReader& contact_table, const
                            "parts move meanwhile");
     int rubbing = 0;
     for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-        if (!scene.parts[i].held || !(scene.parts[i].friction > 0.0) || ++rubbing < 2) continue;
+        if (!scene.parts[i].moves() || !(scene.parts[i].friction > 0.0) || ++rubbing < 2) continue;
         const Node& friction = *read.items("part")[i].find("friction");
         errors.push_back(
             errorAt(friction.place, fmt::format("{}.{}.friction", read.pathOf("part"), scene.parts[i].name),
-                    valueText(friction), "must be 0 on all parts that are held but one: nothing rubs between hands"));
+                    valueText(friction), "must be 0 on all parts that hands hold but one: nothing rubs between hands"));
     }
 }
+
+bool beginsEmpty(const scene::SceneSpec& scene, std::size_t hand) { return scene.heldBy(hand) == scene.parts.size(); }
 
 /// The scene's hands but the first, and their devices.
 void readOtherHands(const TableReader& read, std::span<const std::string> names, double units,
@@ -349,7 +360,8 @@ void readOtherHands(const TableReader& read, std::span<const std::string> names,
         const TableReader& device_table = hand_table.has("device") ? own_device : first_device;
         const DeviceDescription* device = findDevice(device_table, devices);
         scene::HandSpec hand{readLimits(device_table, device), readRegistration(open("registration"), units),
-                             readStartGate(open("start_gate")), names[i]};
+                             readStartGate(open("start_gate"), units, beginsEmpty(content.scene, i + 1), errors),
+                             names[i]};
         checkStability(device_table, contact_table, device, content.scene.contact, hand);
         checkOtherStiffness(hand_table, contact_table, device, content.scene.contact, hand);
         content.other_devices.push_back(device_table.text("preset"));
@@ -377,7 +389,30 @@ scene::Effects readEffects(const TableReader& read, Errors& errors) {
         if (!(effects.weight.gravity.norm() <= kMostGravity))
             weight.fail("gravity_m_per_s2", fmt::format("must be no longer than {}", kMostGravity));
     }
+    if (const Node* node = read.node("pick")) {
+        const TableReader pick(*node, {"effects.pick"}, read.pathOf("pick"), errors);
+        effects.pick = {.reach = pick.number("reach_mm"),
+                        .button = static_cast<int>(pick.integer("button")),
+                        .on_press = pick.text("closed") == "on_press",
+                        .locks = pick.text("let_go") == "lock"};
+    }
     return effects;
+}
+
+/// Parts that can be picked up are no good without hands that pick, nor these without them.
+void checkPicking(const TableReader& read, const TableReader& effects_table, const scene::SceneSpec& scene,
+                  Errors& errors) {
+    bool any = false;
+    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+        if (!scene.parts[i].pickable) continue;
+        any = true;
+        if (effects_table.has("pick")) continue;
+        const Node& pickable = *read.items("part")[i].find("pickable");
+        errors.push_back(errorAt(pickable.place,
+                                 fmt::format("{}.{}.pickable", read.pathOf("part"), scene.parts[i].name),
+                                 valueText(pickable), "needs effects.pick: nothing else picks parts up"));
+    }
+    if (!any && effects_table.has("pick")) effects_table.fail("pick", "needs a part with pickable = true");
 }
 
 }  // namespace
@@ -404,6 +439,8 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
         for (const scene::PartSpec& part : content.scene.parts)
             for (Error& problem : geometries.problems(part)) errors.push_back(std::move(problem));
     content.parts_sound = content.parts_sound && errors.size() == before_parts;
+    content.scene.effects = readEffects(open("effects"), errors);
+    if (content.parts_sound) checkPicking(read, open("effects"), content.scene, errors);
     const std::size_t before_device = errors.size();
     const auto device_table = open("device");
     const DeviceDescription* device = findDevice(device_table, reading.devices);
@@ -427,8 +464,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     const auto only_device = [&] { return errors.size() == before + of_device; };
     if (only_device()) checkSizes(contact_table, content.scene, geometries);
     checkStability(device_table, contact_table, device, content.scene.contact, content.scene.hand(0));
-    content.scene.start_gate = readStartGate(open("start_gate"));
-    content.scene.effects = readEffects(open("effects"), errors);
+    content.scene.start_gate = readStartGate(open("start_gate"), units, beginsEmpty(content.scene, 0), errors);
     // What only the model itself can judge has no line of its own.
     if (only_device())
         for (const Error& error : content.scene.validate())

@@ -47,7 +47,8 @@ private:
         if (part.density > 0.0 && !body)
             return fail(density != nullptr ? *density : node, key,
                         "needs a part that encloses a volume: " + geometries_.notClosed(part));
-        if (!part.held || scene_.effects.weight.gravity.isZero(0.0)) return;
+        if (!part.moves() || scene_.effects.weight.gravity.isZero(0.0)) return;
+        if (density == nullptr && !part.held) return;
         if (density == nullptr)
             return fail(*nearest(table_, "effects", "weight"), "effects.weight",
                         fmt::format("needs density_kg_per_m3 of the held part, {}", part.name));

@@ -31,8 +31,8 @@ std::vector<session::ContactEnergy> contactEnergy(std::span<const scene::Scene> 
         const scene::SceneSpec& spec = scene.spec;
         for (std::size_t hand = 0; hand < spec.handCount(); ++hand) {
             const std::string name = spec.hand(hand).name;
-            for (std::size_t i = 0; i < spec.parts.size(); ++i)
-                if (i != spec.heldBy(hand)) energy.push_back({.obstacle = spec.parts[i].name, .hand = name});
+            for (const std::size_t i : spec.obstaclesOf(hand))
+                energy.push_back({.obstacle = spec.parts[i].name, .hand = name});
             energy.push_back({.obstacle = "", .hand = name});
         }
     }

@@ -127,7 +127,7 @@ public:
             tick::TickFrame frame;
             tick::surveyContacts({hand, wide, wide, frame, wide}, own.X_WG);
             takeNearest(wide.manifold, nearest);
-            const motion::Surroundings around{nearest, own.X_WG.p, hand.metric_radius, -hand.margins.keep};
+            const motion::Surroundings around{nearest, own.metric.at(own.X_WG), -hand.margins.keep};
             const motion::ConstrainedMotion last = motion::constrainMotion(before, around);
             std::vector<std::uint32_t> held;
             held.reserve(static_cast<std::size_t>(last.active));

@@ -266,7 +266,10 @@ void runSolver(Random& random) {
     for (int run = 0; run < 1500; ++run) {
         const contact::ContactManifold manifold = anyManifold(random);
         const double keep_out = random.below(2) == 0 ? -1e-6 : -5e-6;
-        const motion::Surroundings around{manifold, anyVector(random, 0.01), random.uniform(0.005, 0.05), keep_out,
+        const Vec3 origin = anyVector(random, 0.01);
+        const motion::Surroundings around{manifold,
+                                          {random.uniform(0.005, 0.05), origin},
+                                          keep_out,
                                           keep_out - (random.below(2) == 0 ? 0.0 : random.uniform(0.0, 5e-6))};
         motion::Motion wanted;
         const double size = std::pow(10.0, random.uniform(-6.0, -2.0));

@@ -11,8 +11,9 @@ inline scene::Effects everyEffect() {
         .passivity_damping = 5.0,
         .transients = {.amplitude = 5.0, .frequency = 150.0, .decay = 0.01},
         .weight = {.gravity = Vec3(0.0, 0.0, -scene::kStandardGravity)},
+        .pick = {},  // no stage: it changes what a hand holds (pick_test.cpp)
     };
-    [[maybe_unused]] const auto& [passivity_damping, transients, weight] = effects;
+    [[maybe_unused]] const auto& [passivity_damping, transients, weight, pick] = effects;
     return effects;
 }
 

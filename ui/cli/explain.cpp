@@ -48,12 +48,23 @@ void printShapes(const scene::SceneSpec& spec) {
     }
 }
 
-/// Which hand holds what, where there are several.
+/// Which hand holds what, where there are several or they pick parts up.
 void printHands(const scene::SceneSpec& spec) {
-    if (spec.handCount() < 2) return;
-    for (std::size_t i = 0; i < spec.handCount(); ++i)
-        fmt::print("  {:<22}holds {}\n", i == 0 ? "the first hand" : "hand " + spec.hand(i).name,
-                   spec.parts[spec.heldBy(i)].name);
+    if (spec.handCount() < 2 && !spec.effects.picks()) return;
+    for (std::size_t i = 0; i < spec.handCount(); ++i) {
+        const std::size_t held = spec.heldBy(i);
+        fmt::print("  {:<22}{}\n", i == 0 ? "the first hand" : "hand " + spec.hand(i).name,
+                   held == spec.parts.size() ? "begins with nothing" : "holds " + spec.parts[held].name);
+    }
+    if (!spec.effects.picks()) return;
+    std::vector<std::string> names;
+    for (const scene::PartSpec& part : spec.parts)
+        if (part.pickable) names.push_back(part.name);
+    const scene::Pick& pick = spec.effects.pick;
+    fmt::print("  {:<22}{} within {:.4g} mm, by button {}, {}; what is let go {}\n", "picked up",
+               fmt::join(names, ", "), 1e3 * pick.reach, pick.button,
+               pick.on_press ? "at each press" : "while it is down",
+               pick.locks ? "stays for good" : "can be picked up again");
 }
 
 /// What a scene does not cost, and why.
@@ -71,8 +82,8 @@ void printSpared(const scene::Scene& scene) {
     if (!anyPart([](const auto& part) { return part->field != nullptr; })) line("distance fields", from);
     if (!anyPart([](const auto& part) { return part->shell.has_value(); })) line("point shells", from);
     if (!anyPart([](const auto& part) { return part->clusters != nullptr; })) line("trees of surfaces", from);
-    const auto still = static_cast<std::size_t>(std::count_if(scene.spec.parts.begin(), scene.spec.parts.end(),
-                                                              [](const scene::PartSpec& part) { return !part.held; }));
+    const auto still = static_cast<std::size_t>(std::count_if(
+        scene.spec.parts.begin(), scene.spec.parts.end(), [](const scene::PartSpec& part) { return !part.moves(); }));
     if (still < 2) return;
     const std::size_t pairs = still * (still - 1) / 2;
     line("not paired", "why not");
@@ -83,6 +94,7 @@ void printSpared(const scene::Scene& scene) {
 /// Of a hand's part, if the scene has gravity: what is felt and seen of it, and what is not.
 void printWeight(const scene::Scene& scene, std::size_t hand) {
     const std::size_t i = scene.spec.heldBy(hand);
+    if (i == scene.spec.parts.size()) return;
     const scene::PartSpec& held = scene.spec.parts[i];
     if (!(held.density > 0.0) || scene.spec.effects.weight.gravity.isZero(0.0)) return;
     const auto body = scene::massOf(*scene.parts[i], held.density);

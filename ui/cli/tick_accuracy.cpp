@@ -63,6 +63,10 @@ int tickAccuracy(const AccuracyArguments& options) {
     const auto read = run::readSceneOnDevice(*source, options.field, options.import_limits);
     if (!read) return fail(read.errors());
     warn(options.field, read->warnings);
+    if (read->scene.effects.picks())
+        return fail({{.message = "must not be there: the accuracy is that of one held part",
+                      .file = options.field,
+                      .key = "effects.pick"}});
     const auto trajectory = scripted::Trajectory::read(options.trajectory);
     if (!trajectory) return fail(trajectory.errors());
     std::vector<Pose> path;

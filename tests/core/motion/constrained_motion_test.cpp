@@ -44,7 +44,7 @@ ConstrainedMotion solve(const Motion& wanted, const std::vector<ContactPoint>& c
                         const std::vector<std::uint32_t>& likely = {}) {
     ContactManifold manifold(contacts.size());
     for (const auto& c : contacts) EXPECT_TRUE(manifold.tryPush(c));
-    return motion::constrainMotion(wanted, {manifold, Vec3::Zero(), kRho, kKeepOut}, likely);
+    return motion::constrainMotion(wanted, {manifold, {kRho}, kKeepOut}, likely);
 }
 
 double pushOf(const ConstrainedMotion& motion) {
@@ -242,7 +242,7 @@ TEST(ConstrainedMotion, MeetsItsConditionsWhereverTheBodyLies) {
             if (random.below(8) == 0) contact.radius = 1e-3;
             ASSERT_TRUE(manifold.tryPush(contact));
         }
-        const motion::Surroundings around{manifold, origin, rho, keep_out, sunk_out};
+        const motion::Surroundings around{manifold, {rho, origin}, keep_out, sunk_out};
         const Motion wanted = randomMotion(random, std::pow(10.0, random.uniform(-6.0, -4.0)));
         std::vector<std::uint32_t> likely;
         for (int round = 0; round < 3; ++round) {

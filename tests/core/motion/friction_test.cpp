@@ -48,7 +48,7 @@ Motion motion(const Vec3& dx, const Vec3& turn = Vec3::Zero()) {
 
 FrictionMotion rub(const Motion& wanted, const ContactManifold& manifold, const Friction& friction = kDry,
                    const FrictionPatches& before = {}) {
-    return constrainWithFriction(wanted, {manifold, Vec3::Zero(), kRho, kKeepOut}, {&friction, 1}, before);
+    return constrainWithFriction(wanted, {manifold, {kRho}, kKeepOut}, {&friction, 1}, before);
 }
 
 /// A disc of radius `radius` in the plane z = 0, contacts `spacing` apart.
@@ -247,7 +247,7 @@ TEST(Friction, BalancesTheSpringByWhatItTells) {
             contacts.back().area = random.uniform(1e-7, 1e-5);
         }
         const auto manifold = manifoldOf(contacts);
-        const motion::Surroundings around{manifold, origin, rho, kKeepOut, -2e-6};
+        const motion::Surroundings around{manifold, {rho, origin}, kKeepOut, -2e-6};
         Motion wanted;
         wanted << any(2e-4) - Vec3(1e-4, 0, 1e-4), any(1e-4);
         const FrictionMotion found = motion::constrainWithFriction(wanted, around, friction, {});
@@ -452,7 +452,7 @@ TEST(Friction, IsRelaxedWhereTwoWallsThatRubLeaveNoWayOut) {
     }
     const auto manifold = manifoldOf(contacts);
     const Motion wanted = motion({0, 0, -1e-4}, {0, 1e-2, 0});
-    const auto smooth = motion::constrainMotion(wanted, {manifold, Vec3::Zero(), kRho, kKeepOut});
+    const auto smooth = motion::constrainMotion(wanted, {manifold, {kRho}, kKeepOut});
     EXPECT_FALSE(smooth.relaxed);
     EXPECT_NEAR(smooth.u.z(), kDeep, kRounding);
     const FrictionMotion rubbed = rub(wanted, manifold);
@@ -486,7 +486,7 @@ TEST(Friction, WithoutFrictionIsTheConstrainedMotion) {
                                          Vec3(random.normal(), random.normal(), random.normal()).normalized()));
         const Motion wanted = motion(1e-4 * Vec3(random.normal(), random.normal(), random.normal()));
         const auto manifold = manifoldOf(contacts);
-        const auto plain = motion::constrainMotion(wanted, {manifold, Vec3::Zero(), kRho, kKeepOut});
+        const auto plain = motion::constrainMotion(wanted, {manifold, {kRho}, kKeepOut});
         EXPECT_EQ(rub(wanted, manifold, Friction{}).motion.u, plain.u);
     }
 }

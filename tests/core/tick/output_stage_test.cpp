@@ -59,6 +59,7 @@ public:
         frame.F_H_W = F_H_W;
         frame.sample_periods = sample_periods;
         frame.input_usable = usable;
+        state.X_DG = model.registration.X_DH;
         tick::runStage<tick::kOutputLimits>(model, state, frame);
         return frame;
     }
@@ -485,6 +486,7 @@ TEST(OutputStage, SharesOutWhatItSendsAsThePushesShareWhatWasAskedFor) {
     for (const bool turns : {true, false}) {
         LastStage last;
         last.model.limits.actuates_torque = turns;
+        last.model.obstacles = {{.body = 0}, {.body = 1}};
         last.state.pushes.resize(3);
         last.state.last_shares.resize(3);
         Random random(14);

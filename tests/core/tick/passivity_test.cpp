@@ -262,6 +262,7 @@ public:
         frame.F_H_W = kContact;
         frame.sample_periods = sample_periods;
         tick::HandState state;
+        state.X_DG = model.registration.X_DH;
         state.energy.taken_in = energy;
         state.energy.V_BD = V_BD;
         tick::runStage<tick::kPassivityController>(model, state, frame);

@@ -237,13 +237,74 @@ TEST(SceneReader, TellsWhatHandsCannotHaveYet) {
                   .find("s.toml:13:16: error: contact.budget_nodes: 9: must be 0 with more than one hand"),
               std::string::npos);
     EXPECT_NE(errorsOf(handScene("hand = \"left\"\nfriction = 0.2", left, "friction = 0.3\n"))
-                  .find("error: part.peg.friction: 0.3: must be 0 on all parts that are held but one"),
+                  .find("error: part.peg.friction: 0.3: must be 0 on all parts that hands hold but one"),
               std::string::npos);
     // A name that is none is told once.
     EXPECT_EQ(
         errorsOf(handScene("hand = \"left\"", "[[hand]]\nname = \"LEFT\"\n")),
         "s.toml:12:8: error: hand.name: \"LEFT\": must be lower-case letters, digits and _, beginning with a letter");
     EXPECT_EQ(errorsOf(handScene("hand = \"left\"", "[[hand]]\n")), "s.toml:11:1: error: hand.name: required");
+}
+
+/// A pickable peg on a plate that rests, an empty hand, and what else there is.
+std::string pickScene(const std::string& part, const std::string& more) {
+    return R"([[part]]
+name = "plate"
+shape = { kind = "box", width = 60, depth = 50, height = 30 }
+[[part]]
+name = "peg"
+)" + part +
+           R"(
+shape = { kind = "box", width = 10, depth = 10, height = 10 }
+pose = { position = [0, 0, 40] }
+)" + more;
+}
+
+TEST(SceneReader, ReadsPartsThatHandsPickUp) {
+    // Truth: the file, by hand. Hands may begin with nothing then, each with a start pose of its own.
+    const auto scene =
+        read(pickScene("pickable = true",
+                       "[effects.pick]\nreach_mm = 7\n[start_gate]\nhold_ms = 50\npose = { position = [1, 2, 3] }\n"
+                       "[[hand]]\nname = \"left\"\nstart_gate = { pose = { position = [4, 5, 6] }, hold_ms = 30 }\n"));
+    ASSERT_TRUE(scene) << toString(scene.errors().front());
+    EXPECT_EQ(scene->effects.pick.reach, 7e-3);
+    EXPECT_EQ(scene->effects.pick.button, 0);
+    EXPECT_FALSE(scene->effects.pick.on_press);
+    EXPECT_FALSE(scene->effects.pick.locks);
+    EXPECT_FALSE(scene->parts[0].pickable);
+    EXPECT_TRUE(scene->parts[1].pickable);
+    EXPECT_EQ(scene->heldBy(0), 2u) << "nothing";
+    EXPECT_TRUE(scene->canPick(0));
+    EXPECT_EQ(scene->obstaclesOf(1), (std::vector<std::size_t>{0, 1}));
+    EXPECT_EQ(scene->hand(0).start_gate.X_WH.p, Vec3(1e-3, 2e-3, 3e-3));
+    EXPECT_EQ(scene->hand(1).start_gate.X_WH.p, Vec3(4e-3, 5e-3, 6e-3));
+    const auto other = read(pickScene("pickable = true\nheld = true",
+                                      "[effects.pick]\nreach_mm = 7\nbutton = 23\nclosed = \"on_press\"\nlet_go = "
+                                      "\"lock\"\n"));
+    ASSERT_TRUE(other) << toString(other.errors().front());
+    EXPECT_EQ(other->effects.pick.button, 23);
+    EXPECT_TRUE(other->effects.pick.on_press);
+    EXPECT_TRUE(other->effects.pick.locks);
+    EXPECT_EQ(other->heldBy(0), 1u);
+}
+
+TEST(SceneReader, TellsWhatIsWrongWithPickingUp) {
+    // Truth: the rules of KEYS.md; place, key, value, requirement.
+    EXPECT_EQ(errorsOf(pickScene("pickable = true\nheld = true", "")),
+              "s.toml:6:12: error: part.peg.pickable: true: needs effects.pick: nothing else picks parts up");
+    EXPECT_EQ(errorsOf(pickScene("held = true", "[effects.pick]\nreach_mm = 7\n")),
+              "s.toml:9:1: error: effects.pick: {...}: needs a part with pickable = true");
+    EXPECT_EQ(errorsOf(pickScene("pickable = true", "[effects.pick]\n")),
+              "s.toml:9:1: error: effects.pick.reach_mm: required");
+    EXPECT_EQ(errorsOf(pickScene("pickable = true", "[effects.pick]\nreach_mm = 7\nbutton = 24\n")),
+              "s.toml:11:10: error: effects.pick.button: 24: must be from 0 to 23");
+    EXPECT_EQ(errorsOf(pickScene("pickable = true", "[effects.pick]\nreach_mm = 7\n[start_gate]\nhold_ms = 50\n")),
+              "s.toml:12:11: error: start_gate.hold_ms: 50: needs `pose`: the hand begins with nothing");
+    EXPECT_EQ(
+        errorsOf(pickScene("pickable = true\nheld = true",
+                           "[effects.pick]\nreach_mm = 7\n[start_gate]\npose = { position = [1, 2, 3] }\n")),
+        "s.toml:13:8: error: start_gate.pose: {...}: is that of the part which the hand holds: only a hand that begins "
+        "with nothing has its own");
 }
 
 TEST(SceneReader, RefusesAStiffnessThatAnotherHandsDeviceDoesNotBear) {
