@@ -114,6 +114,7 @@ struct Traversal {
     NearGroups groups;
     Batch batch;
     double unproven_area = 0.0;
+    double waiting_area = 0.0;    // of nodes in the queue, where a least quality is asked for [m²]
     double expected = kInfinity;  // the search will find φ no farther than this
 
     Traversal(const ShellInField& in, const QueryPlan& p, ContactFinds& f, QueryWorkspace& w, Certificates* k)
@@ -126,6 +127,20 @@ struct Traversal {
           shell(in.shell),
           known(p.pointwise() || p.grouped || p.request.prove ? nullptr : k),
           queue(w.heap_, p.ordered) {}
+
+    /// What waits is more than the quality that is asked for leaves.
+    bool needsMore() const noexcept {
+        return request.quality > 0.0 && waiting_area > (1.0 - request.quality) * shell.totalArea();
+    }
+    void wait(const QueryWorkspace::Entry& entry) noexcept {
+        queue.push(entry);
+        if (request.quality > 0.0) waiting_area += shell.nodes()[entry.node].area;
+    }
+    QueryWorkspace::Entry takeNext() noexcept {
+        const QueryWorkspace::Entry entry = queue.pop();
+        if (request.quality > 0.0) waiting_area -= shell.nodes()[entry.node].area;
+        return entry;
+    }
 
     bool exceedsBudget(const shell::SphereNode& node) noexcept {
         int children = 0;
@@ -150,7 +165,7 @@ struct Traversal {
             }
             const bool first =
                 request.max_nodes > 0 && !request.spheres && !request.pauses && node < shell.roots().size();
-            queue.push({bound, first ? -kInfinity : bound, node});
+            wait({bound, first ? -kInfinity : bound, node});
         }
         batch.count = 0;
     }
@@ -442,12 +457,13 @@ struct Traversal {
         else
             push(0, static_cast<std::uint32_t>(shell.roots().size()), -kInfinity);
         while (!queue.empty()) {
-            if (request.max_nodes > 0 && exceedsBudget(shell.nodes()[queue.next()])) {
+            const bool ends = request.max_nodes > 0 && exceedsBudget(shell.nodes()[queue.next()]);
+            if (ends && (request.pauses || !needsMore())) {
                 finds.answer.budget_reached = true;
                 if (!request.pauses) break;
                 if (finds.answer.nodes_visited > 0) return pause();
             }
-            const QueryWorkspace::Entry entry = queue.pop();
+            const QueryWorkspace::Entry entry = takeNext();
             const shell::SphereNode& node = shell.nodes()[entry.node];
             if (entry.bound >= finds.pruneAbove()) continue;
             if (node.leaf) {

@@ -120,7 +120,9 @@ struct QueryRequest {
     double every_below = std::numeric_limits<double>::infinity();
     double search_below = 0.0;  // the deepest or closest point is searched up to this φ [m]
     int max_nodes = 0;          // budget (the thesis's η_c, in nodes so that it is deterministic); 0 = none
-    bool pauses = false;        // where the budget ends the query waits in its workspace, for more (queryContacts)
+    // Least QueryAnswer::quality (the thesis's q_c), 0 … 1: wins over the budget, but not of a query that pauses.
+    double quality = 0.0;
+    bool pauses = false;  // where the budget ends the query waits in its workspace, for more (queryContacts)
     field::FieldMode mode = field::FieldMode::Trilinear;
     bool prove = false;     // also find QueryAnswer::lower_bound; costs about as much again
     bool spheres = false;   // a node left over by the budget also enters the manifold as a sphere
@@ -146,8 +148,9 @@ struct QueryRequest {
 ///   evaluated, in one loop over the whole leaf. Limit cases: everything far → the roots are all that is visited; a
 ///   budget that ends → each node still waiting is represented by its own point with the area vector of all points
 ///   below (the wrench of a constant pressure stays the same), and `quality` says which share of the area was proven or
-///   evaluated. With `spheres` its sphere enters the manifold besides, with φ = b: what keeps the sphere out keeps its
-///   points out.
+///   evaluated. With a least quality asked for it goes on, best first still, until nodes of no more than the rest of
+///   the area wait, though some of these might be ruled out yet. With `spheres` its sphere enters the manifold besides,
+///   with φ = b: what keeps the sphere out keeps its points out.
 /// A query that `pauses` when its budget ends leaves no node out: the same call, with the contacts found so far in
 /// `manifold`, goes on where it stopped, by one node at least, until its answer is no longer `paused` and is that of a
 /// query without a budget. Its counts are those of one call each.

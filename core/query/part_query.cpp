@@ -137,6 +137,7 @@ PartQueryResult PartQuery::Search::oneWay(const scene::Part& field, const scene:
     const bool decided = search && request_.max_nodes == 0 && std::isinf(request_.proximity);
     contact::QueryRequest request{.search_below = request_.proximity,
                                   .max_nodes = request_.max_nodes,
+                                  .quality = request_.quality,
                                   .mode = request_.mode,
                                   .prove = !decided,
                                   .gradients = false};
@@ -144,14 +145,8 @@ PartQueryResult PartQuery::Search::oneWay(const scene::Part& field, const scene:
     contact::QueryAnswer answer =
         queryContacts(*field.field, Pose{}, *shell.shell, X_FS, request, workspace_, manifold_);
     PartQueryResult result;
-    if (answer.quality < request_.quality) {
-        request.max_nodes = 0;
-        manifold_.clear();
-        const int spent = answer.nodes_visited;
-        answer = queryContacts(*field.field, Pose{}, *shell.shell, X_FS, request, workspace_, manifold_);
-        answer.nodes_visited += spent;
-        result.quality_overruled_budget = true;
-    }
+    result.quality_overruled_budget =
+        request_.quality > 0.0 && request_.max_nodes > 0 && answer.nodes_visited > request_.max_nodes;
     result.signed_distance = answer.phi;
     result.quality = answer.quality;
     result.budget_reached = answer.budget_reached;

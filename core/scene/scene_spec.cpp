@@ -122,6 +122,11 @@ std::vector<Error> SceneSpec::validate() const {
     check.notNegative("contact: cell", contact.cell);
     check.positive("contact: spacing", contact.spacing);
     check.require(contact.budget_nodes >= 0, "contact: budget_nodes", contact.budget_nodes, "must be ≥ 0");
+    check.require(contact.quality >= 0.0 && contact.quality <= 1.0, "contact: quality", contact.quality,
+                  "must be 0 … 1");
+    check.require(!(contact.quality > 0.0) || (contact.budget_nodes > 0 && contact.method == ContactMethod::Penalty),
+                  "contact: quality", contact.quality,
+                  "must be 0 without a penalty under a budget of nodes: nothing is left out then");
     if (handCount() > 1 && std::count_if(parts.begin(), parts.end(),
                                          [](const PartSpec& part) { return part.moves() && part.friction > 0.0; }) > 1)
         check.errors.push_back({.message = "must be 0 on all parts that hands hold but one: nothing rubs between hands",

@@ -64,6 +64,7 @@ struct ContactSpec {
     double spacing = 1.0e-3;   // of the point shell [m], > 0
     field::FieldMode mode = field::FieldMode::Trilinear;
     int budget_nodes = 0;       // per query, of a god object per query and tick; 0 = no budget
+    double quality = 0.0;       // least share of a shell's area that a query under a budget looks at; penalty only
     bool two_way = false;       // the obstacles' points are held against the held part's field too
     double proxy_filter = 0.0;  // corner of the god object's low-pass while in contact [Hz]; 0 = none
 

@@ -67,6 +67,7 @@ contact::QueryAnswer queryObstacles(const HandModel& model, const ObstaclePoses&
                                     FewOfMany<ObstaclePush>* pushes) noexcept {
     request.mode = model.contact.mode;
     request.max_nodes = model.contact.budget_nodes;
+    request.quality = model.contact.quality;
     contact::QueryAnswer all;
     all.phi = all.lower_bound = request.search_below;
     // What refinement finds between the samples must not hide the samples of another obstacle from it.

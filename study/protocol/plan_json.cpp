@@ -91,6 +91,7 @@ std::string contactJson(const plan::Condition& condition) {
             .number("spacing_m", contact.spacing)
             .text("mode", field::modeName(contact.mode))
             .integer("budget_nodes", contact.budget_nodes);
+    if (contact.quality > 0.0) json.number("quality", contact.quality);
     return json.boolean("two_way", contact.two_way).str();
 }
 

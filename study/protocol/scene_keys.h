@@ -137,6 +137,7 @@ inline constexpr std::array kSceneKeys{
     Key{"contact", "mode", Choice, kAny, "layered|surface_point|linear|trilinear|cubic", "trilinear",
         "Interpolation in the distance field, from coarse to smooth."},
     Key{"contact", "budget_nodes", Integer, from(0, 1000000), "", "0", "Largest number of tree nodes that a query visits, of a god object in one tick: its query goes on in the next; 0 = no budget."},
+    Key{"contact", "quality", Number, from(0, 1), "", "0", "Least share of the held part's surface that a query under budget_nodes looks at or rules out: it wins over the budget. Penalty only. Samples have the share that was reached, `quality`."},
     Key{"contact", "two_way", Boolean, kAny, "", "(true where a pin, fin, wall, acute edge or relief of an obstacle would slip between the held part's points)", "True where points of the obstacles are held against the held part as well: finds edges between the held part's points, and takes about twice as long. With false, what would slip through is an error."},
     Key{"contact", "proxy_filter_hz", Number, from(0, 500), "", "0", "Corner of the proxy's low-pass while in contact; 0 = no filter. God objects only."},
 

@@ -259,6 +259,11 @@ scene::ContactSpec readContact(const TableReader& read, const DeviceDescription*
     contact.spacing = read.numberOr("spacing_mm", contact.spacing);
     contact.mode = field::modeNamed(read.text("mode")).value_or(contact.mode);
     contact.budget_nodes = static_cast<int>(read.integer("budget_nodes"));
+    contact.quality = read.number("quality");
+    if (contact.quality > 0.0 && contact.method != scene::ContactMethod::Penalty)
+        read.fail("quality", "needs method = \"penalty\": a god object's look goes on until it has seen all");
+    else if (contact.quality > 0.0 && contact.budget_nodes == 0)
+        read.fail("quality", "needs budget_nodes: without a budget nothing is left out");
     if (read.has("two_way")) contact.two_way = read.boolean("two_way");
     contact.proxy_filter = read.number("proxy_filter_hz");
     return contact;

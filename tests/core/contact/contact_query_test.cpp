@@ -219,6 +219,42 @@ TEST(ContactQuery, ABudgetKeepsTheWeightOfAPlatePressedFlatAndSaysWhatItDidNotPr
     EXPECT_LT(last_quality, 1.0);
 }
 
+TEST(ContactQuery, ALeastQualityWinsOverTheBudget) {
+    // Truth: invariant. What is asked for is reached, with no more nodes than a higher quality takes, and all of it is
+    // a query without a budget.
+    const scene::Part table = build(shape::Box{0.06, 0.06, 0.02});
+    const scene::Part ring = build(shape::Torus{0.02, 0.006}, 0.5e-3);
+    contact::QueryWorkspace workspace(ring.shell->nodes().size());
+    contact::ContactManifold manifold(ring.shell->nodes().size() + ring.shell->points().size());
+    Random random(8);
+    int left_out = 0;
+    for (int run = 0; run < 40; ++run) {
+        const Pose X_WS{rotationFromVector(0.4 * Vec3(random.normal(), random.normal(), random.normal())),
+                        Vec3(0.01 * random.normal(), 0.01 * random.normal(), 0.011)};
+        const auto ask = [&](int budget, double quality) {
+            manifold.clear();
+            return contact::queryContacts(*table.field, Pose{}, *ring.shell, X_WS,
+                                          {.search_below = 1.0, .max_nodes = budget, .quality = quality}, workspace,
+                                          manifold);
+        };
+        const auto all = ask(0, 0.0), alone = ask(60, 0.0);
+        int nodes = alone.nodes_visited;
+        for (const double quality : {0.2, 0.5, 0.8, 0.95, 1.0}) {
+            const auto answer = ask(60, quality);
+            EXPECT_GE(answer.quality, quality - 1e-12);
+            EXPECT_GE(answer.nodes_visited, nodes);
+            nodes = answer.nodes_visited;
+            left_out += answer.budget_reached && quality > alone.quality ? 1 : 0;
+        }
+        const auto whole = ask(60, 1.0);
+        EXPECT_FALSE(whole.budget_reached);
+        EXPECT_EQ(whole.phi, all.phi);
+        EXPECT_EQ(whole.contacts, all.contacts);
+        EXPECT_EQ(whole.quality, 1.0);
+    }
+    EXPECT_GT(left_out, 20) << "floors between what the budget reaches and all";
+}
+
 /// The least φ of `obstacle` over a ball, by its closed form on a net of directions that is made finer around the best.
 double deepestOfBall(const shape::Shape& obstacle, const Vec3& centre, double radius) {
     double least = 1e300;

@@ -307,6 +307,24 @@ TEST(SceneReader, TellsWhatIsWrongWithPickingUp) {
         "with nothing has its own");
 }
 
+TEST(SceneReader, ReadsALeastQualityOfThePenaltyUnderABudget) {
+    // Truth: the rules of KEYS.md.
+    const auto with = [](const std::string& contact) {
+        return pickScene("held = true", "[contact]\ngeometry = \"field\"\n" + contact);
+    };
+    const auto scene = read(with("method = \"penalty\"\nbudget_nodes = 50\nquality = 0.6\n"));
+    ASSERT_TRUE(scene) << toString(scene.errors().front());
+    EXPECT_EQ(scene->contact.quality, 0.6);
+    EXPECT_NE(errorsOf(with("method = \"penalty\"\nquality = 0.6\n")).find("contact.quality: 0.6: needs budget_nodes"),
+              std::string::npos);
+    EXPECT_NE(errorsOf(with("method = \"god_object\"\nbudget_nodes = 50\nquality = 0.6\n"))
+                  .find("contact.quality: 0.6: needs method = \"penalty\""),
+              std::string::npos);
+    EXPECT_NE(errorsOf(with("method = \"penalty\"\nbudget_nodes = 50\nquality = 1.6\n"))
+                  .find("contact.quality: 1.6: must be from 0 to 1"),
+              std::string::npos);
+}
+
 TEST(SceneReader, RefusesAStiffnessThatAnotherHandsDeviceDoesNotBear) {
     // Truth: the device's stable maximum, 1000 N/m of "stick"; the scene's is that of "arm", 4000 N/m.
     const std::string device = "[device]\npreset = \"arm\"\n";
