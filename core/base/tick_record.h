@@ -77,6 +77,11 @@ struct TickRecord {
     // An output: no point of the held part at X_WG is nearer to an obstacle than this, ≥ 0 [m]. NaN: the contact's
     // geometry proves none, as sampled points and fields.
     float proxy_gap_m = std::numeric_limits<float>::quiet_NaN();
+    // Outputs of scenes with navigation (core/tick/navigation.h); of others the scale is NaN.
+    std::uint32_t navigation_clutched = 0;                               // 1: the clutch is held
+    float navigation_scale = std::numeric_limits<float>::quiet_NaN();    // scene metres per device metre now
+    std::array<float, 3> navigation_offset_m{};                          // scene axes, beside the registration
+    std::array<float, 4> navigation_quaternion{1.0f, 0.0f, 0.0f, 0.0f};  // w, x, y, z: of the part in the handle
     // measured, never compared by a replay
     std::int64_t duration_ns = 0;   // of the tick's computation, by the wall clock
     std::int64_t processor_ns = 0;  // of it, that the loop's thread spent on a processor

@@ -27,7 +27,7 @@ public:
         }
     }
     void device(const HandSpec& hand) {
-        const auto& [limits, registration, start_gate, name] = hand;
+        const auto& [limits, registration, start_gate, name, navigation] = hand;
         positive("limits: max force", limits.max_force);
         notNegative("limits: max torque", limits.max_torque);
         positive("limits: max force rate", limits.max_force_rate);
@@ -41,6 +41,18 @@ public:
         notNegative("start gate: position tolerance", start_gate.position_tolerance);
         notNegative("start gate: angle tolerance", start_gate.angle_tolerance);
         require(start_gate.hold_ticks >= 0, "start gate: hold", start_gate.hold_ticks, "must be ≥ 0");
+        navigate(navigation);
+    }
+    void navigate(const Navigation& navigation) {
+        const auto& [clutch, second_scale, drift] = navigation;
+        for (const int button : {clutch.button, second_scale.button})
+            require(button >= 0 && button <= kButtons, "navigation: button", button, "must be 1 … 24, or 0 for none");
+        require(clutch.button == 0 || clutch.button != second_scale.button, "navigation: button", clutch.button,
+                "must differ for clutch and scale");
+        positive("navigation: scale", second_scale.scale);
+        require(drift.share >= 0.0 && drift.share <= kMostDrift, "navigation: share", drift.share, "must be 0 … 0.5");
+        positive("navigation: radius", drift.radius);
+        require(drift.home.allFinite(), "navigation: home", drift.home.norm(), "must be finite");
     }
     std::vector<Error> errors;
 };
@@ -118,6 +130,17 @@ std::vector<Error> SceneSpec::validate() const {
     check.notNegative("contact: proxy filter", contact.proxy_filter);
     for (std::size_t i = 0; i < handCount(); ++i) check.device(hand(i));
     return check.errors;
+}
+
+void dropRegistrations(SceneSpec& spec) {
+    const auto drop = [](Registration& registration, Navigation& navigation) {
+        navigation.second_scale.scale /= registration.scale;
+        navigation.drift.radius *= registration.scale;
+        navigation.drift.home = registration.X_WB * (registration.scale * navigation.drift.home);
+        registration = Registration{};
+    };
+    drop(spec.registration, spec.effects.navigation);
+    for (HandSpec& hand : spec.other_hands) drop(hand.registration, hand.navigation);
 }
 
 }  // namespace passung::scene

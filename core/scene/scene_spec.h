@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -114,11 +115,41 @@ inline constexpr double kStandardGravity = 9.80665;  // [m/s²]
 /// nothing would tell which way, and contacts turn it too.
 inline constexpr double kMostHangingTurn = 1.0;
 
+inline constexpr int kButtons = 24;  // of a device, from 1: as many as a record holds (core/base/tick_record.h)
+
+/// While its button is held the hand moves and the part stays.
+struct Clutch {
+    int button = 0;           // 1 … kButtons; 0: none
+    bool orientation = true;  // the part keeps its orientation too; false: it goes on turning with the hand
+};
+/// Another scale than the registration's while its button is held.
+struct SecondScale {
+    int button = 0;      // as Clutch::button
+    double scale = 1.0;  // scene metres per device metre, > 0
+};
+/// The scene moves under the hand while the hand moves, so that the hand comes back to the middle of its workspace.
+struct Drift {
+    double share = 0.0;        // of the hand's speed, 0 … kMostDrift; 0: none
+    double radius = 0.1;       // from the middle on it is the whole share [m] of the device, > 0
+    Vec3 home = Vec3::Zero();  // the middle, device base frame [m]
+};
+inline constexpr double kMostDrift = 0.5;
+
+/// How a hand gets about in a scene that is larger than the device's workspace (core/tick/navigation.h).
+struct Navigation {
+    Clutch clutch = {};
+    SecondScale second_scale = {};
+    Drift drift = {};
+
+    bool any() const noexcept { return clutch.button > 0 || second_scale.button > 0 || drift.share > 0.0; }
+};
+
 /// Effects beyond contact; what is 0 is not built.
 struct Effects {
     double passivity_damping = 0.0;  // most of the passivity controller's damper [N·s/m], ≥ 0; 0: no controller
     Transients transients;
     Weight weight;
+    Navigation navigation = {};  // of the first hand
 };
 
 inline constexpr std::size_t kMostHands = 4;
@@ -129,6 +160,12 @@ struct HandSpec {
     Registration registration;
     StartGate start_gate;
     std::string name = {};  // as records and exports call it; of the first hand empty
+    Navigation navigation = {};
+    /// Scene metres per device metre, the most that it may come to.
+    double largestScale() const noexcept {
+        return navigation.second_scale.button > 0 ? std::max(registration.scale, navigation.second_scale.scale)
+                                                  : registration.scale;
+    }
 };
 
 struct SceneSpec {
@@ -146,7 +183,7 @@ struct SceneSpec {
     std::size_t handCount() const { return 1 + other_hands.size(); }
     /// @pre `i` < handCount()
     HandSpec hand(std::size_t i) const {
-        return i == 0 ? HandSpec{limits, registration, start_gate} : other_hands[i - 1];
+        return i == 0 ? HandSpec{limits, registration, start_gate, {}, effects.navigation} : other_hands[i - 1];
     }
     /// Index of the part that hand `i` holds. @pre validate() found nothing, `i` < handCount()
     std::size_t heldBy(std::size_t i) const;
@@ -154,5 +191,9 @@ struct SceneSpec {
     /// Everything wrong with the values, cross-field rules included. Finite first.
     std::vector<Error> validate() const;
 };
+
+/// For paths of the held parts in the world, in place of devices' poses: no registration, and navigation as it is in
+/// the scene's metres.
+void dropRegistrations(SceneSpec& spec);
 
 }  // namespace passung::scene

@@ -54,6 +54,7 @@ HandState makeHandState(const HandModel& model) {
         state.X_WO_begin.push_back(state.X_WO[i]);
     }
     state.X_WT = model.X_WG_start;
+    state.offset.scale = model.registration.scale;
     if (!model.moving.empty()) state.from_hands.resize(model.obstacles.size());
     state.engaged = model.start_gate.hold_ticks <= 0;
     state.X_WG = state.step.X_WT_followed = model.X_WG_start;

@@ -66,8 +66,7 @@ Vec3 wayToContact(const HandModel& model, HandState& state) {
 
 /// Poses are those of the held part: the registration has nothing to do.
 scene::Scene unregistered(scene::Scene scene) {
-    scene.spec.registration = scene::Registration{};
-    for (scene::HandSpec& hand : scene.spec.other_hands) hand.registration = scene::Registration{};
+    scene::dropRegistrations(scene.spec);
     return scene;
 }
 

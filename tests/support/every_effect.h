@@ -11,8 +11,11 @@ inline scene::Effects everyEffect() {
         .passivity_damping = 5.0,
         .transients = {.amplitude = 5.0, .frequency = 150.0, .decay = 0.01},
         .weight = {.gravity = Vec3(0.0, 0.0, -scene::kStandardGravity)},
+        .navigation = {.clutch = {.button = 2},
+                       .second_scale = {.button = 3, .scale = 0.5},
+                       .drift = {.share = 0.1, .radius = 0.05}},
     };
-    [[maybe_unused]] const auto& [passivity_damping, transients, weight] = effects;
+    [[maybe_unused]] const auto& [passivity_damping, transients, weight, navigation] = effects;
     return effects;
 }
 
