@@ -20,7 +20,7 @@ Pose imageOf(const Offset& offset, const Pose& X_BD) noexcept {
 }
 
 /// What the clutch will hold, as the tick before left it, in which it was taken.
-void note(const HandModel& model, const Proxy& proxy, const Hang& hang, HandMapping& mapping) noexcept {
+void noteHold(const HandModel& model, const Proxy& proxy, const Hang& hang, HandMapping& mapping) noexcept {
     Clutched& clutch = mapping.clutch;
     clutch.noted = true;
     clutch.X_WH = mapping.sample.X_WH;
@@ -65,7 +65,7 @@ void changeScale(double scale, const Pose& X_BD_last, Offset& offset) noexcept {
     offset.moved = true;
 }
 
-void drift(const scene::Drift& drift, const Vec3& before, const Vec3& now, Offset& offset) noexcept {
+void addDrift(const scene::Drift& drift, const Vec3& before, const Vec3& now, Offset& offset) noexcept {
     const double way = (now - before).norm();
     const Vec3 m = 0.5 * (now + before) - drift.home;
     if (!(way > kNoWay)) return;
@@ -74,9 +74,9 @@ void drift(const scene::Drift& drift, const Vec3& before, const Vec3& now, Offse
 }
 
 /// One new good sample of a hand whose trial has begun. Where the part is asked to be.
-Pose follow(const HandModel& model, const Reading& device, const Pose& X_BD, const EnergyAccount& account,
-            const Proxy& proxy, const Hang& hang, const ContactSign& sign, const HandSample& hand,
-            HandMapping& mapping) noexcept {
+Pose followSample(const HandModel& model, const Reading& device, const Pose& X_BD, const EnergyAccount& account,
+                  const Proxy& proxy, const Hang& hang, const ContactSign& sign, const HandSample& hand,
+                  HandMapping& mapping) noexcept {
     const scene::Navigation& navigation = model.effects.navigation;
     Clutched& clutch = mapping.clutch;
     const double fade = static_cast<double>(hand.sample_periods) / kGripTicks;
@@ -84,7 +84,7 @@ Pose follow(const HandModel& model, const Reading& device, const Pose& X_BD, con
                yields = account.taken_in < mapping.sample.energy - kYield;
     if ((clutch.held || pressed) && yields) clutch.grip = 0.0;
     if (clutch.held) {
-        if (!clutch.noted) note(model, proxy, hang, mapping);
+        if (!clutch.noted) noteHold(model, proxy, hang, mapping);
         clutch.held = pressed;
         if (pressed) clutch.grip = std::max(0.0, clutch.grip - fade);
         return heldPose(model, X_BD, mapping);
@@ -97,7 +97,7 @@ Pose follow(const HandModel& model, const Reading& device, const Pose& X_BD, con
         const double scale = wantedScale(model, device);
         if (scale != mapping.offset.scale) changeScale(scale, mapping.sample.X_BD, mapping.offset);
         if (navigation.drift.share > 0.0 && mapping.sample.follows)
-            drift(navigation.drift, mapping.sample.believed, account.X_BD.p - account.ahead.v, mapping.offset);
+            addDrift(navigation.drift, mapping.sample.believed, account.X_BD.p - account.ahead.v, mapping.offset);
     }
     return mappedPose(model.registration, mapping.offset, X_BD);
 }
@@ -126,7 +126,7 @@ void navigate(const HandModel& model, const Reading& device, const InputGuard& g
         if (hand.sample_periods == 0 && mapping.sample.known)
             hand.X_WH = mapping.sample.X_WH;
         else if (gate.engaged && mapping.sample.known)
-            hand.X_WH = follow(model, device, X_BD, account, proxy, hang, sign, hand, mapping);
+            hand.X_WH = followSample(model, device, X_BD, account, proxy, hang, sign, hand, mapping);
         else
             hand.X_WH = mappedPose(model.registration, mapping.offset, X_BD);
         if (hand.sample_periods > 0) {
