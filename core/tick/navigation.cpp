@@ -93,7 +93,7 @@ Pose followSample(const HandModel& model, const Reading& device, const Pose& X_B
     clutch.noted = false;
     if (pressed) return mappedPose(model.registration, mapping.offset, X_BD);
     clutch.grip = std::min(1.0, clutch.grip + fade);
-    if (!sign.touching && !hand.relocated) {
+    if (!sign.touching) {
         const double scale = wantedScale(model, device);
         if (scale != mapping.offset.scale) changeScale(scale, mapping.sample.X_BD, mapping.offset);
         if (navigation.drift.share > 0.0 && mapping.sample.follows)

@@ -397,6 +397,42 @@ TEST(Clutch, FadesTheWrenchAndRelaxesTheCoupling) {
     }
 }
 
+TEST(Clutch, RelaxesWhatItsPartIsTurnedBy) {
+    // Truth: closed form. A box that lies flat on a plate is turned by 0.1 rad about x at the hand, which is pressed in
+    // by a millimetre: the proxy stays flat but for what the coupling tilts it. After the clutch there is neither force
+    // nor torque, and the proxy is where it was. Without `orientation` the torque about the handle stays all the time.
+    for (const Way& way : kProxies)
+        for (const bool orientation : {true, false}) {
+            auto spec = test::scene(shape::Box{0.02, 0.02, 0.02}, Pose{Quat::Identity(), {0, 0, 0.0105}},
+                                    shape::Box{0.06, 0.06, 0.02}, Pose{Quat::Identity(), {0, 0, -0.01}}, way.method);
+            spec.contact.geometry = way.geometry;
+            spec.contact.rotational_stiffness = 0.5;
+            spec.effects.navigation = clutchOnly(orientation);
+            spec.registration.X_WB = {rotationFromVector({0.4, 1.1, -0.6}), Vec3(0.1, 0.2, 0.3)};
+            test::Bench bench(spec);
+            Pose X;
+            tick::TickOutput output;
+            for (int i = 0; i < 300; ++i) {
+                if (i < 100)
+                    X = spec.registration.X_WB.inverse() *
+                        Pose{rotationFromVector({1e-3 * i, 0, 0}), Vec3(0, 0, 0.0105 - 1.5e-5 * i)};
+                output = bench.step(X);
+            }
+            const Pose X_WG = output.X_WG;
+            const Wrench before = output.F_D_B;
+            ASSERT_GT(before.torque.norm(), 1e-3) << scene::geometryName(way.geometry);
+            for (int i = 0; i < 60; ++i) output = bench.step(DeviceReading{.X_BD = X, .buttons = kClutch});
+            EXPECT_EQ(output.F_D_B.force.norm(), 0.0);
+            EXPECT_EQ(output.F_D_B.torque.norm() > 0.0, !orientation);
+            for (int i = 0; i < 5; ++i) output = bench.step(X);
+            const double left = orientation ? 2e-2 : 0.3;  // what is turned goes on to press a little
+            EXPECT_LT(output.F_D_B.force.norm(), left * before.force.norm()) << scene::geometryName(way.geometry);
+            if (!orientation) continue;
+            EXPECT_LT(output.F_D_B.torque.norm(), 2e-2 * before.torque.norm()) << scene::geometryName(way.geometry);
+            EXPECT_LT(apart(output.X_WG, X_WG), 1e-3);
+        }
+}
+
 /// Energy that goes into the controller through the handle, from readings and commands alone.
 class Port {
 public:
@@ -518,6 +554,88 @@ TEST(Clutch, OfAPenaltyGivesBackWhatItTookIn) {
     }
     EXPECT_EQ(output.F_D_B.force.norm(), 0.0);
     EXPECT_LT((bench.step(X).F_D_B.force - F.force).norm(), 1e-12);
+}
+
+TEST(Clutch, SendsTheShareThatItsGripLeaves) {
+    // Truth: closed form, of the stage alone: F' = g F; with `orientation` T' = g T; without it the torque about the
+    // handle, T + (p_H - p_I) x F, is the same before and after. Pushes likewise, the weight's g-fold in both.
+    // Released: all but the weight is whole.
+    const auto spec = alone();
+    const test::Bench bench(spec);
+    for (const bool orientation : {true, false})
+        for (const bool held : {true, false}) {
+            tick::HandModel model = bench.model();
+            model.registration = askew(2.0);
+            model.effects.navigation = clutchOnly(orientation);
+            model.weight = Vec3(0.1, 0.2, -0.7);
+            tick::HandSample hand;
+            hand.X_WH = {rotationFromVector({0.1, 0.5, -0.3}), Vec3(0.2, 0.1, 0.0)};
+            tick::HandMapping mapping;
+            mapping.clutch.held = held;
+            mapping.clutch.grip = 0.3;
+            const Wrench contact{Vec3(1, -2, 3), Vec3(0.1, 0.2, -0.1)}, weight{model.weight, Vec3(0.01, 0, 0.02)};
+            tick::Pushes pushes;
+            pushes.pushes.resize(2);
+            pushes.pushes[0] = {contact, 2.0};
+            pushes.pushes[1] = {weight, 0.0};
+            tick::HandWrench wrench;
+            wrench.F_H_W = {contact.force + weight.force, contact.torque + weight.torque};
+            tick::fadeWrench(model, hand, mapping, pushes, wrench);
+            const double share = held ? 0.3 : 1.0;
+            const Wrench left = pushes.pushes[0].wrench, hung = pushes.pushes[1].wrench;
+            EXPECT_LT((left.force - share * contact.force).norm(), 1e-15);
+            const Vec3 lever = tick::leverOf(model, hand);
+            const Vec3 about = left.torque + lever.cross(left.force),
+                       whole = contact.torque + lever.cross(contact.force);
+            EXPECT_LT((orientation ? Vec3(left.torque - share * contact.torque) : Vec3(about - whole)).norm(), 1e-15);
+            EXPECT_LT((hung.force - 0.3 * weight.force).norm() + (hung.torque - 0.3 * weight.torque).norm(), 1e-15);
+            EXPECT_LT((wrench.F_H_W.force - left.force - hung.force).norm(), 1e-15);
+            EXPECT_LT((wrench.F_H_W.torque - left.torque - hung.torque).norm(), 1e-15);
+            EXPECT_EQ(pushes.pushes[0].pressure, 2.0 * share);
+        }
+}
+
+TEST(ContactSign, IsAWrenchOrThroughAVirtualToolContacts) {
+    // Truth: closed form, of the stage alone.
+    const test::Bench god_object(ballOverPlate(scene::ContactMethod::GodObject, 1e-3));
+    auto coupled = ballOverPlate(scene::ContactMethod::Penalty, 1e-3);
+    coupled.contact.coupling = scene::PenaltyCoupling::Virtual;
+    const test::Bench tool(coupled);
+    for (const bool force : {false, true})
+        for (const bool torque : {false, true})
+            for (const std::uint32_t contacts : {0u, 3u}) {
+                tick::ContactRecord record;
+                record.contacts = contacts;
+                tick::HandWrench wrench;
+                if (force) wrench.F_H_W.force.x() = 1e-6;
+                if (torque) wrench.F_H_W.torque.y() = 1e-9;
+                tick::ContactSign sign;
+                tick::noteContact(god_object.model(), record, wrench, sign);
+                EXPECT_EQ(sign.touching, force || torque);
+                tick::noteContact(tool.model(), record, wrench, sign);
+                EXPECT_EQ(sign.touching, contacts > 0);
+            }
+}
+
+TEST(Clutch, OfAHeavyPartThatIsTakenAtAnotherTurnLeavesItsWeightOutOfTheAccount) {
+    // Truth: closed form. A peg by its end turns with the hand, is clutched while the hand turns on, and turns with it
+    // again: its weight's torque does work, which its potential pays; what holding the torque for a tick gives out is
+    // at most |τ| ω² T/2 a second.
+    auto spec = alone();
+    spec.parts[0].geometry = shape::Peg{0.01, 0.06, 0.001};
+    spec.parts[0].density = 7850.0;
+    spec.effects.weight.gravity = Vec3(0, 0, -9.8);
+    spec.effects.navigation = clutchOnly();
+    test::Bench bench(spec);
+    const double omega = 1.5, torque = 7850.0 * M_PI / 4 * 1e-4 * 0.06 * 9.8 * 0.03;
+    for (int i = 0; i < 1500; ++i) {
+        const Pose X{rotationFromVector({omega * kTickSeconds * i, 0, 0}), Vec3::Zero()};
+        const bool held = i >= 400 && i < 900;
+        const auto output = bench.step(DeviceReading{.X_BD = X, .buttons = held ? kClutch : 0u});
+        // While the wrench fades its torque is on a handle that turns without the part: up to |τ| ω 50 ms/2.
+        const double faded = i > 400 ? torque * omega * 0.026 : 0.0;
+        EXPECT_LE(std::abs(output.frame.energy), torque * omega * omega * 1e-3 * 1.5 / 2 + faded + 1e-12) << i;
+    }
 }
 
 TEST(Clutch, TakesTheWeightAndGivesItBack) {
