@@ -84,7 +84,7 @@ struct OutputLimits {
     int delay_ticks = 0;              // added between command and effect
 };
 
-/// Maps device space to the scene: X_WH = align · scale(X_BD) · handle.
+/// Maps device space to the scene: X_WH = align · scale(X_BD) · handle, where navigation moves nothing.
 struct Registration {
     Pose X_WB;           // device base in the scene
     double scale = 1.0;  // scene metres per device metre, > 0

@@ -86,11 +86,11 @@ struct ContactSign {
 ///     H_c + (1 - g) e_c: nothing pushes the hand when it lets the button go. As soon as the account says that the
 ///     wrench gave energy out in the last tick, g = 0: the hand yields to it, and nobody needs the rest. So what a
 ///     clutch gives out at nobody's expense is the first tick's motion of a hand that begins to yield after it was
-///     taken: none of one that yields already. What the spring held is lost. Released, the contact's wrench is whole at
-///     once; it begins with what is left of the stretch: nothing where there is a proxy and g came to 0. Without a
-///     proxy (penalty at the hand) the part cannot be relaxed: the wrench comes back, within the output's limit of
-///     rising force; what it gives was taken in before. `orientation` false: the torque about the handle stays whole,
-///     as its motion does.
+///     taken, none of one that yields already; a delay of the output adds its ticks. What the spring held is lost.
+///     Released, the contact's wrench is whole at once; it begins with what is left of the stretch: nothing where there
+///     is a proxy and g came to 0. Without a proxy (penalty at the hand) the part cannot be relaxed: the wrench comes
+///     back, within the output's limit of rising force; what it gives was taken in before. `orientation` false: the
+///     torque about the handle stays whole, as its motion does.
 ///   - weight fades with g, and comes back in kGripTicks: it has a potential of the handle's place alone
 ///     (liftEnergy), which the account books by the share that was sent.
 ///

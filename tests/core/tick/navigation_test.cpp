@@ -336,6 +336,31 @@ TEST(Drift, RestsWithTheHand) {
     EXPECT_EQ((output.frame.offset - offset).norm(), 0.0);
 }
 
+TEST(Drift, GoesOnInTheAirWhateverRendersContact) {
+    // Truth: closed form of the rule, along a line from the middle: nothing touches, also where a tool of a penalty
+    // follows the hand by a spring.
+    using enum scene::PenaltyCoupling;
+    for (const auto coupling : {Direct, QuasiStatic, Virtual})
+        for (const bool weighs : {false, true}) {
+            auto spec = ballOverPlate(scene::ContactMethod::Penalty, 0.05);
+            spec.contact.coupling = coupling;
+            spec.contact.damping = 2.0;
+            if (weighs) {
+                spec.parts[0].density = 1000.0;
+                spec.effects.weight.gravity = Vec3(0, 0, -9.8);
+            }
+            spec.effects.navigation.drift = {0.3, 0.1, spec.parts[0].X_WP.p};
+            test::Bench bench(spec);
+            tick::TickOutput output;
+            for (int i = 0; i <= 200; ++i) {
+                Pose X = spec.parts[0].X_WP;
+                X.p.x() += 1e-4 * i;
+                output = bench.step(X);
+            }
+            EXPECT_NEAR(output.frame.offset.x(), 0.3 * 0.02 * 0.02 / 0.2, 1e-12);
+        }
+}
+
 TEST(Drift, WaitsInContactAndGoesOnAfterwards) {
     // Truth: closed form: the offset stays while a wrench of contact is there, whatever the hand does, and moves before
     // and after.
