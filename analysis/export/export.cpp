@@ -196,7 +196,7 @@ Result<ExportReport> exportAll(const store::StoreReader& reader, const std::stri
         tables.push_back({kSamplesPattern,
                           "One file per attempt, one row per recorded tick (1 kHz): "
                           "`<participant>_<session>_t<trial_index>_a<attempt_no>.csv.gz`.",
-                          sampleColumns(),
+                          sampleColumns(study->navigation),
                           {}});
     }
     for (const ExportedFile& file : namedFiles(*study)) writer.write(file.path, file.bytes);

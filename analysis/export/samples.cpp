@@ -97,7 +97,7 @@ void addCommand(NumberText& row, bool has, double command) {
     row.add(has ? command : std::numeric_limits<double>::quiet_NaN());
 }
 
-std::vector<SampleColumn> makeSampleColumns() {
+std::vector<SampleColumn> makeSampleColumns(bool navigation) {
     std::vector<SampleColumn> columns = {
         {{"tick", "Number of the tick in the attempt, from 0", "", "integer", "", 1, {}},
          [](NumberText& row, const Sample& sample, std::size_t) { row.add(sample.record.tick); }},
@@ -145,14 +145,19 @@ std::vector<SampleColumn> makeSampleColumns() {
         "1 from onset_s to before off_s of a row of secondary.csv", [](NumberText& row, const Sample& s, std::size_t) {
             addCommand(row, s.commanded.secondary, s.lit ? 1.0 : 0.0);
         });
+    if (!navigation) return columns;
+    for (const store::Channel& channel : store::navigationChannels()) {
+        columns.push_back(channelColumn(channel));
+        columns.back().column.formula = "only in files of conditions with effects.clutch, position_scale or drift";
+    }
     return columns;
 }
 
 }  // namespace
 
-std::vector<Column> sampleColumns() {
+std::vector<Column> sampleColumns(bool navigation) {
     std::vector<Column> columns;
-    for (const SampleColumn& column : makeSampleColumns()) columns.push_back(column.column);
+    for (const SampleColumn& column : makeSampleColumns(navigation)) columns.push_back(column.column);
     return columns;
 }
 
@@ -185,12 +190,13 @@ SampleSignals sampleSignals(const StudyData& study, const store::AttemptRow& att
 
 std::string samplesCsv(std::span<const TickRecord> records, const SampleSignals& commanded) {
     constexpr std::size_t kTypicalRow = 400;
-    std::string text = toCsv(Table{{}, {}, sampleColumns(), {}});
+    const bool navigation = store::haveNavigation(records);
+    std::string text = toCsv(Table{{}, {}, sampleColumns(navigation), {}});
     text.reserve(text.size() + records.size() * kTypicalRow);
     NumberText row(text);
     measures::PeriodClock clock;
     measures::CueSignals signals(commanded.cues);
-    const std::vector<SampleColumn> columns = makeSampleColumns();
+    const std::vector<SampleColumn> columns = makeSampleColumns(navigation);
     std::size_t shown = 0;  // stimuli that are over
     for (const TickRecord& record : records) {
         const std::int64_t period = clock.at(record);

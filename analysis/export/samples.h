@@ -16,8 +16,8 @@
 namespace passung::exporter {
 
 /// Columns of every file in samples/: tick, t_s, the recorded channels, and the commands of the cues that follow from
-/// them. Computing times are not among them.
-std::vector<Column> sampleColumns();
+/// them; last those of `navigation`, only in files of attempts whose scene has it. Computing times are not among them.
+std::vector<Column> sampleColumns(bool navigation);
 
 /// `samples/<participant>_<session>_t<trial>_a<attempt>.csv.gz`; of another hand than the first, `hand` from 0, with
 /// `_` and its name before the dot.

@@ -75,6 +75,9 @@ Result<StudyData> readStudy(const store::StoreReader& reader) {
     StudyData study;
     study.damages = reader.damages();
     Errors errors;
+    const auto navigation = reader.hasNavigation();
+    if (!navigation) errors.insert(errors.end(), navigation.errors().begin(), navigation.errors().end());
+    study.navigation = navigation && *navigation;
     std::vector<store::FactorRow> factors;
     take(reader.protocols(), study.protocols, errors);
     take(reader.factors(), factors, errors);

@@ -327,6 +327,7 @@ Result<TickAccuracy> measureTicks(const scene::SceneSpec& scene, std::span<const
     TickAccuracy result;
     scene::SceneSpec spec = scene;
     spec.registration = {};
+    spec.effects.navigation = {};  // the path is that of the held part
     spec.start_gate = {};
     const ForceReference reference(spec);
     if (!reference.missing().empty()) result.notes.push_back("no force to compare with: " + reference.missing());

@@ -39,6 +39,7 @@ struct DeviceDescription {
     double recommended_rotational_damping_Nms_per_rad = 0;
     std::string stability_source;
     std::optional<DeviceMechanism> mechanism;  // only of a simulated device: of a real one it is not known exactly
+    std::optional<int> buttons;                // of the handle; nothing: not known
 };
 
 }  // namespace passung

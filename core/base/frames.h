@@ -9,7 +9,7 @@
 /// | W | world of the scene; z is up in the shipped scenes |
 /// | B | base of the haptic device, as its driver reports it |
 /// | D | the device's handle |
-/// | H | the held part where the device asks it to be (handle pose through the registration) |
+/// | H | the held part where the device asks it to be (handle pose through registration and navigation) |
 /// | G | the held part's proxy (god object) |
 /// | F | a part that carries the distance field of a query (an obstacle) |
 /// | S | a part that carries the point shell of a query (the held part) |

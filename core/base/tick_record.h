@@ -81,6 +81,11 @@ struct TickRecord {
     float proxy_gap_m = std::numeric_limits<float>::quiet_NaN();
     // An output: which part the hand holds, in the order of the scene; kNoPart, or kPartNotTold of a recording without.
     std::int32_t held = kPartNotTold;
+    // Outputs of scenes with navigation (core/tick/navigation.h); of others the scale is NaN.
+    std::uint32_t navigation_clutched = 0;                               // 1: the clutch is held
+    float navigation_scale = std::numeric_limits<float>::quiet_NaN();    // scene metres per device metre now
+    std::array<float, 3> navigation_offset_m{};                          // scene axes, beside the registration
+    std::array<float, 4> navigation_quaternion{1.0f, 0.0f, 0.0f, 0.0f};  // w, x, y, z: of the part in the handle
     // measured, never compared by a replay
     std::int64_t duration_ns = 0;   // of the tick's computation, by the wall clock
     std::int64_t processor_ns = 0;  // of it, that the loop's thread spent on a processor

@@ -22,9 +22,9 @@ public:
     void field(const char* name, Number recorded, Number replayed) {
         if (recorded != replayed) report(name, recorded, replayed);
     }
-    /// One NaN is as another: a recording from before the gap was recorded has its reader's.
-    void gap(float recorded, float replayed) {
-        if (!(std::isnan(recorded) && std::isnan(replayed))) field("proxy_gap_m", recorded, replayed);
+    /// One NaN is as another: a recording from before the value was recorded has its reader's.
+    void known(const char* name, float recorded, float replayed) {
+        if (!(std::isnan(recorded) && std::isnan(replayed))) field(name, recorded, replayed);
     }
     template <std::size_t N>
     void field(const char* name, const std::array<float, N>& recorded, const std::array<float, N>& replayed) {
@@ -57,8 +57,12 @@ std::optional<Difference> compare(const TickRecord& recorded, const TickRecord& 
     comparison.field("torque_Nm", recorded.torque_Nm, replayed.torque_Nm);
     comparison.field("hand_depth_m", recorded.hand_depth_m, replayed.hand_depth_m);
     comparison.field("proxy_depth_m", recorded.proxy_depth_m, replayed.proxy_depth_m);
-    comparison.gap(recorded.proxy_gap_m, replayed.proxy_gap_m);
     if (recorded.held != kPartNotTold) comparison.field("held", recorded.held, replayed.held);
+    comparison.known("proxy_gap_m", recorded.proxy_gap_m, replayed.proxy_gap_m);
+    comparison.known("navigation_scale", recorded.navigation_scale, replayed.navigation_scale);
+    comparison.field("navigation_clutched", recorded.navigation_clutched, replayed.navigation_clutched);
+    comparison.field("navigation_offset_m", recorded.navigation_offset_m, replayed.navigation_offset_m);
+    comparison.field("navigation_quaternion", recorded.navigation_quaternion, replayed.navigation_quaternion);
     comparison.field("energy_J", recorded.energy_J, replayed.energy_J);
     comparison.field("quality", recorded.quality, replayed.quality);
     comparison.field("status", recorded.status, replayed.status);

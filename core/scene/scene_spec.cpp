@@ -27,7 +27,7 @@ public:
         }
     }
     void device(const HandSpec& hand) {
-        const auto& [limits, registration, start_gate, name] = hand;
+        const auto& [limits, registration, start_gate, name, navigation] = hand;
         finite("start gate: pose", start_gate.X_WH);
         positive("limits: max force", limits.max_force);
         notNegative("limits: max torque", limits.max_torque);
@@ -42,6 +42,18 @@ public:
         notNegative("start gate: position tolerance", start_gate.position_tolerance);
         notNegative("start gate: angle tolerance", start_gate.angle_tolerance);
         require(start_gate.hold_ticks >= 0, "start gate: hold", start_gate.hold_ticks, "must be ≥ 0");
+        navigate(navigation);
+    }
+    void navigate(const Navigation& navigation) {
+        const auto& [clutch, second_scale, drift] = navigation;
+        for (const int button : {clutch.button, second_scale.button})
+            require(button >= 0 && button <= kButtons, "navigation: button", button, "must be 1 … 24, or 0 for none");
+        require(clutch.button == 0 || clutch.button != second_scale.button, "navigation: button", clutch.button,
+                "must differ for clutch and scale");
+        positive("navigation: scale", second_scale.scale);
+        require(drift.share >= 0.0 && drift.share <= kMostDrift, "navigation: share", drift.share, "must be 0 … 0.5");
+        positive("navigation: radius", drift.radius);
+        require(drift.home.allFinite(), "navigation: home", drift.home.norm(), "must be finite");
     }
     std::vector<Error> errors;
 };
@@ -101,8 +113,14 @@ std::vector<Error> SceneSpec::validate() const {
                           held.size() == 1 ? "exactly one part must be held" : "each hand must hold exactly one part");
     const bool pickable = std::any_of(parts.begin(), parts.end(), [](const PartSpec& part) { return part.pickable; });
     check.notNegative("effects: pick: reach", effects.pick.reach);
-    check.require(effects.pick.button >= 0 && effects.pick.button < kMostButtons, "effects: pick: button",
-                  effects.pick.button, "must be 0 … 23");
+    check.require(effects.pick.button >= 1 && effects.pick.button <= kButtons, "effects: pick: button",
+                  effects.pick.button, "must be 1 … 24");
+    for (std::size_t i = 0; effects.picks() && i < handCount(); ++i) {
+        const Navigation navigation = hand(i).navigation;
+        check.require(
+            effects.pick.button != navigation.clutch.button && effects.pick.button != navigation.second_scale.button,
+            "effects: pick: button", effects.pick.button, "must be another one than those of navigation");
+    }
     check.require(pickable == effects.picks(), "effects: pick: reach", effects.pick.reach,
                   pickable ? "must be > 0 where a part is pickable" : "must be 0 where no part is pickable");
     check.positive("contact: stiffness", contact.stiffness);
@@ -145,6 +163,17 @@ std::vector<Error> SceneSpec::validate() const {
     check.notNegative("contact: proxy filter", contact.proxy_filter);
     for (std::size_t i = 0; i < handCount(); ++i) check.device(hand(i));
     return check.errors;
+}
+
+void dropRegistrations(SceneSpec& spec) {
+    const auto drop = [](Registration& registration, Navigation& navigation) {
+        navigation.second_scale.scale /= registration.scale;
+        navigation.drift.radius *= registration.scale;
+        navigation.drift.home = registration.X_WB * (registration.scale * navigation.drift.home);
+        registration = Registration{};
+    };
+    drop(spec.registration, spec.effects.navigation);
+    for (HandSpec& hand : spec.other_hands) drop(hand.registration, hand.navigation);
 }
 
 }  // namespace passung::scene

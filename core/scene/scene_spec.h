@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -88,7 +89,7 @@ struct OutputLimits {
     int delay_ticks = 0;              // added between command and effect
 };
 
-/// Maps device space to the scene: X_WH = align · scale(X_BD) · handle.
+/// Maps device space to the scene: X_WH = align · scale(X_BD) · handle, where navigation moves nothing.
 struct Registration {
     Pose X_WB;           // device base in the scene
     double scale = 1.0;  // scene metres per device metre, > 0
@@ -115,19 +116,47 @@ struct Weight {
     Vec3 gravity = Vec3::Zero();  // world axes [m/s²]; zero: none
 };
 
+inline constexpr int kButtons = 24;  // of a device, from 1: as many as a record holds (core/base/tick_record.h)
+
 /// Hands pick parts up and let them go, by a button of their device: core/tick/pick.h.
 struct Pick {
     double reach = 0.0;     // from the hand's point to a part that it closes on [m], ≥ 0; 0: nothing is picked up
-    int button = 0;         // of the device, 0 … kMostButtons - 1
+    int button = 1;         // 1 … kButtons
     bool on_press = false;  // each press closes or opens the hand; else it is closed while the button is down
     bool locks = false;     // what is let go stays there for good
 };
-inline constexpr int kMostButtons = 24;  // that a record keeps
 
 inline constexpr double kStandardGravity = 9.80665;  // [m/s²]
 /// A part's weight turns it by no more than this against the coupling's rotational stiffness [rad]: from half a turn on
 /// nothing would tell which way, and contacts turn it too.
 inline constexpr double kMostHangingTurn = 1.0;
+
+/// While its button is held the hand moves and the part stays.
+struct Clutch {
+    int button = 0;           // 1 … kButtons; 0: none
+    bool orientation = true;  // the part keeps its orientation too; false: it goes on turning with the hand
+};
+/// Another scale than the registration's while its button is held.
+struct SecondScale {
+    int button = 0;      // as Clutch::button
+    double scale = 1.0;  // scene metres per device metre, > 0
+};
+/// The scene moves under the hand while the hand moves, so that the hand comes back to the middle of its workspace.
+struct Drift {
+    double share = 0.0;        // of the hand's speed, 0 … kMostDrift; 0: none
+    double radius = 0.1;       // from the middle on it is the whole share [m] of the device, > 0
+    Vec3 home = Vec3::Zero();  // the middle, device base frame [m]
+};
+inline constexpr double kMostDrift = 0.5;
+
+/// How a hand gets about in a scene that is larger than the device's workspace (core/tick/navigation.h).
+struct Navigation {
+    Clutch clutch = {};
+    SecondScale second_scale = {};
+    Drift drift = {};
+
+    bool any() const noexcept { return clutch.button > 0 || second_scale.button > 0 || drift.share > 0.0; }
+};
 
 /// Effects beyond contact; what is 0 is not built.
 struct Effects {
@@ -135,6 +164,7 @@ struct Effects {
     Transients transients;
     Weight weight;
     Pick pick;
+    Navigation navigation = {};  // of the first hand
 
     bool picks() const noexcept { return pick.reach > 0.0; }
 };
@@ -147,6 +177,12 @@ struct HandSpec {
     Registration registration;
     StartGate start_gate;
     std::string name = {};  // as records and exports call it; of the first hand empty
+    Navigation navigation = {};
+    /// Scene metres per device metre, the most that it may come to.
+    double largestScale() const noexcept {
+        return navigation.second_scale.button > 0 ? std::max(registration.scale, navigation.second_scale.scale)
+                                                  : registration.scale;
+    }
 };
 
 struct SceneSpec {
@@ -164,7 +200,7 @@ struct SceneSpec {
     std::size_t handCount() const { return 1 + other_hands.size(); }
     /// @pre `i` < handCount()
     HandSpec hand(std::size_t i) const {
-        return i == 0 ? HandSpec{limits, registration, start_gate} : other_hands[i - 1];
+        return i == 0 ? HandSpec{limits, registration, start_gate, {}, effects.navigation} : other_hands[i - 1];
     }
     /// Index of the part that hand `i` begins with; parts.size() if it begins with nothing.
     /// @pre validate() found nothing, `i` < handCount()
@@ -177,5 +213,9 @@ struct SceneSpec {
     /// Everything wrong with the values, cross-field rules included. Finite first.
     std::vector<Error> validate() const;
 };
+
+/// For paths of the held parts in the world, in place of devices' poses: no registration, and navigation as it is in
+/// the scene's metres.
+void dropRegistrations(SceneSpec& spec);
 
 }  // namespace passung::scene

@@ -20,9 +20,9 @@ struct EnergyAccount {
     Twist V_BD;   // from the one before that
     Wrench sent;  // sum of what was sent since
     int ticks = 0;
-    int weighed = 0;      // of them, with the part's weight in what was sent
-    Hanging hanging;      // whose it is
-    double lifted = 0.0;  // liftEnergy of where the handle was believed to be then [J]
+    double weighed = 0.0;  // sum over them of the share of the part's weight in what was sent
+    Hanging hanging;       // whose it is
+    double lifted = 0.0;   // liftEnergy of where the handle was believed to be then [J]
 };
 
 /// The share of one obstacle in it: contact_energy.h.

@@ -156,6 +156,7 @@ HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size
     model.registration = device.registration;
     model.start_gate = device.start_gate;
     model.effects = spec.effects;
+    model.effects.navigation = device.navigation;
     model.record_hand_depth = spec.record_hand_depth;
     model.display_wrench = spec.display_wrench;
     const double ratio = spec.contact.rotational_stiffness / spec.contact.stiffness;

@@ -53,6 +53,7 @@ HandState makeHandState(const HandModel& model) {
     state.X_DG = model.registration.X_DH;
     state.X_WT = model.X_WG_start;
     state.metric = motion::Metric{model.metric_radius};
+    state.offset.scale = model.registration.scale;
     if (model.meetsHands()) state.from_hands.resize(model.obstacles.size());
     state.engaged = model.start_gate.hold_ticks <= 0;
     state.X_WG = state.step.X_WT_followed = model.X_WG_start;

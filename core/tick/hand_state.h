@@ -12,6 +12,7 @@
 #include "core/tick/grip.h"
 #include "core/tick/hand_model.h"
 #include "core/tick/input_guard.h"
+#include "core/tick/navigation.h"
 #include "core/tick/output_stage.h"
 #include "core/tick/passivity.h"
 #include "core/tick/penalty.h"
@@ -31,27 +32,28 @@ namespace passung::tick {
 // The wholes, for those who walk the stages. No stage includes this header: from its parts no way leads to others.
 
 /// Every stage that a scene may need, in the order of the tick.
-using AllStages = StageList<kInputGuard, kEnergyAccount, kStartGate, kWeight,           // where the hand is
-                            kFreeHand,                                                  // no contact
-                            kContactsAtHand, kPenaltyWrench,                            // direct penalty
-                            kPenaltyTool, kProxySweep,                                  // tool, god object
-                            kProxyCorrection, kProxyMotion,                             // its heuristic
-                            kProxyFilter, kCommonWay, kProxyRecord, kHandDepth,         // what follows them
-                            kClosedFormProxy, kClosedFormFilter, kClosedFormCommonWay,  // god objects on closed forms
-                            kClosedFormRecord, kClosedFormDepth,                        // what follows them
-                            kSurfaceProxy, kSurfaceRecord, kSurfaceDepth,               // the same on surfaces
-                            kFollowedPart, kVirtualCoupling,                            // their wrench
-                            kHeldPushes,
-                            kTransients,                                                        // effects
-                            kContactShares, kWeightInHand, kOutputDelay, kPassivityController,  // what goes out
-                            kNoWrench, kOutputLimits>;
+using AllStages =
+    StageList<kInputGuard, kEnergyAccount, kNavigation, kStartGate, kWeight,  // where the hand is
+              kFreeHand,                                                      // no contact
+              kContactsAtHand, kPenaltyWrench,                                // direct penalty
+              kPenaltyTool, kProxySweep,                                      // tool, god object
+              kProxyCorrection, kProxyMotion,                                 // its heuristic
+              kProxyFilter, kCommonWay, kProxyRecord, kHandDepth,             // what follows them
+              kClosedFormProxy, kClosedFormFilter, kClosedFormCommonWay,      // god objects on closed forms
+              kClosedFormRecord, kClosedFormDepth,                            // what follows them
+              kSurfaceProxy, kSurfaceRecord, kSurfaceDepth,                   // the same on surfaces
+              kFollowedPart, kVirtualCoupling,                                // their wrench
+              kHeldPushes, kContactSign,
+              kTransients,                                                                         // effects
+              kContactShares, kWeightInHand, kClutchedWrench, kOutputDelay, kPassivityController,  // what goes out
+              kNoWrench, kOutputLimits>;
 
 /// Everything of a hand that a tick carries to the next: the stages' own states. Sized by makeHandState; a tick never
 /// allocates.
-struct HandState : Parts<ObstaclePoses, HeldTarget, Grip, FollowedPart, InputGuard, Engagement, EnergyAccounts, Proxy,
-                         ProxyMotion, ProxyFilter, ClosedFormHold, FilteredHold, ClosedFormMemory, SurfaceFollow,
-                         HandVelocity, ToolMotion, Stretch, Hang, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {
-};
+struct HandState
+    : Parts<ObstaclePoses, HeldTarget, Grip, FollowedPart, InputGuard, HandMapping, Engagement, EnergyAccounts, Proxy,
+            ProxyMotion, ProxyFilter, ClosedFormHold, FilteredHold, ClosedFormMemory, SurfaceFollow, HandVelocity,
+            ToolMotion, Stretch, ContactSign, Hang, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
 
 /// What of it goes with the part: waits where nobody holds it.
 struct PartState : Parts<ObstaclePoses, HeldTarget, Proxy, ProxyMotion, ProxyFilter, ClosedFormHold, FilteredHold,

@@ -26,15 +26,10 @@ double factorRising(const Vec3& v, const Vec3& last, const Vec3& at_sample, doub
     return factorWithin(v, std::max({0.0, last.dot(direction), at_sample.dot(direction)}) + rise);
 }
 
-/// From the handle's origin to the held part's, world axes.
-Vec3 lever(const HandSample& hand, const Grip& grip) noexcept {
-    return hand.X_WH.q * (grip.X_DG.q.conjugate() * grip.X_DG.p);
-}
-
 /// From the held part's origin and world axes to the handle's origin and device base axes.
 Wrench wrenchOnDevice(const HandModel& model, const HandSample& hand, const Grip& grip, const Wrench& F_H_W) noexcept {
     const Quat R_BW = model.registration.X_WB.q.conjugate();
-    const Vec3 p_DH_W = lever(hand, grip);
+    const Vec3 p_DH_W = leverOf(hand, grip);
     return {R_BW * F_H_W.force, R_BW * (F_H_W.torque + p_DH_W.cross(F_H_W.force))};
 }
 
@@ -56,11 +51,15 @@ void splitSent(const HandModel& model, const HandSample& hand, const Grip& grip,
 
 }  // namespace
 
+Vec3 leverOf(const HandSample& hand, const Grip& grip) noexcept {
+    return hand.X_WH.q * (grip.X_DG.q.conjugate() * grip.X_DG.p);
+}
+
 Wrench wrenchOnHeldPart(const HandModel& model, const HandSample& hand, const Grip& grip,
                         const Wrench& F_D_B) noexcept {
     const Quat& R_WB = model.registration.X_WB.q;
     const Vec3 force = R_WB * F_D_B.force;
-    return {force, R_WB * F_D_B.torque - lever(hand, grip).cross(force)};
+    return {force, R_WB * F_D_B.torque - leverOf(hand, grip).cross(force)};
 }
 
 void delayOutput(const HandModel& model, const HandSample& hand, DelayLine& line, Pushes& pushes,
@@ -96,7 +95,7 @@ void limitOutput(const HandModel& model, const HandSample& hand, const Grip& gri
         command.F_D_B = Wrench{};
         felt.F_H_W = Wrench{};
         sent.last_sent = sent.sent_at_sample = Wrench{};
-        sent.weighed = false;
+        sent.weighed = 0.0;
         sent.last_shares.clear();
         return;
     }
@@ -118,7 +117,7 @@ void limitOutput(const HandModel& model, const HandSample& hand, const Grip& gri
     command.F_D_B = wrench;
     felt.F_H_W = wrenchOnHeldPart(model, hand, grip, wrench);
     sent.last_sent = wrench;
-    sent.weighed = model.hasWeight() && !pushes.pushes.back().wrench.force.isZero(0.0);
+    sent.weighed = model.hasWeight() ? pushes.pushes.back().wrench.force.norm() / model.weight.norm() : 0.0;
     if (hand.sample_periods > 0) sent.sent_at_sample = wrench;
     splitSent(model, hand, grip, pushes, sent, within * force_rising, turns ? within * torque_rising : 0.0);
 }

@@ -22,9 +22,12 @@ struct SentWrench {
     Wrench last_sent;                  // F_D_B of the previous tick
     Wrench sent_at_sample;             // F_D_B of the last tick with a new sample
     bool latched = false;              // a computed wrench was not finite
-    bool weighed = false;              // the held part's weight is in last_sent
+    double weighed = 0.0;              // share of the held part's weight that is in last_sent, 0 … 1
     FewOfMany<Wrench> last_shares{1};  // of last_sent, as EnergyAccounts::pairs
 };
+
+/// From the handle's origin, or its image in the scene (navigation.h), to the held part's, world axes [m]. rt-safe.
+Vec3 leverOf(const HandSample& hand, const Grip& grip) noexcept;
 
 /// What a wrench about the handle's origin in the device's base axes is on the held part: about its origin, world axes.
 /// rt-safe.

@@ -21,9 +21,11 @@ Pose believedPose(const Pose& X_BD, const Twist& ahead) noexcept {
 }
 
 /// Leaves the energy of the part's weight out of the account, and of that of what no obstacle pushes.
-void leaveOutWeight(const HandModel& model, const Grip& grip, const Pose& X_BD, EnergyAccounts& accounts) noexcept {
+void leaveOutWeight(const HandModel& model, const Grip& grip, const HandMapping& mapping, const Pose& X_BD,
+                    EnergyAccounts& accounts) noexcept {
     EnergyAccount& account = accounts.energy;
-    const Pose X = believedPose(X_BD, account.ahead);
+    Pose X = believedPose(X_BD, account.ahead);
+    if (mapping.offset.moved) X.q = X.q * mapping.offset.Q;  // the part's turn in the handle
     if (account.has_sample) {
         const double of_weight = (liftEnergy(account.hanging, X) - account.lifted) * account.weighed / account.ticks;
         account.taken_in -= of_weight;
@@ -31,18 +33,19 @@ void leaveOutWeight(const HandModel& model, const Grip& grip, const Pose& X_BD, 
     }
     account.hanging = hangingOf(model, grip);
     account.lifted = liftEnergy(account.hanging, X);
-    account.weighed = 0;
+    account.weighed = 0.0;
 }
 
 }  // namespace
 
 void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSample& hand, const Grip& grip,
-                   const SentWrench& sent, EnergyAccounts& accounts, EnergyRecord& record) noexcept {
+                   const HandMapping& mapping, const SentWrench& sent, EnergyAccounts& accounts,
+                   EnergyRecord& record) noexcept {
     EnergyAccount& account = accounts.energy;
     account.sent.force += sent.last_sent.force;
     account.sent.torque += sent.last_sent.torque;
     ++account.ticks;
-    if (sent.weighed) ++account.weighed;
+    account.weighed += sent.weighed;
     for (const std::uint32_t i : sent.last_shares.held()) {
         accounts.pairs[i].sent.force += sent.last_shares[i].force;
         accounts.pairs[i].sent.torque += sent.last_shares[i].torque;
@@ -59,12 +62,12 @@ void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSa
             const Vec3 moved = certainMotion(dx, model.limits.quantum, account.ahead.v);
             const Vec3 turned = certainMotion(dphi, model.limits.rotational_quantum, account.ahead.w);
             account.taken_in -= (account.sent.force.dot(moved) + account.sent.torque.dot(turned)) / account.ticks;
-            if (weighs) leaveOutWeight(model, grip, X, accounts);
+            if (weighs) leaveOutWeight(model, grip, mapping, X, accounts);
             bookPairs(accounts, moved, turned, account.ticks);
             const double elapsed = kTickSeconds * static_cast<double>(hand.sample_periods);
             account.V_BD = {dx / elapsed, dphi / elapsed};
         } else if (weighs) {
-            leaveOutWeight(model, grip, X, accounts);
+            leaveOutWeight(model, grip, mapping, X, accounts);
         }
         account.X_BD = X;
         account.has_sample = true;

@@ -3,6 +3,7 @@
 #include "core/tick/energy_account.h"
 #include "core/tick/hand_model.h"
 #include "core/tick/input_guard.h"
+#include "core/tick/navigation.h"
 #include "core/tick/output_stage.h"
 #include "core/tick/tick_frame.h"
 #include "core/tick/weight.h"
@@ -15,7 +16,7 @@ namespace passung::tick {
 ///
 /// Symbols: Δx, Δφ how far the handle moved for certain from the good sample before to this one (see below); F̄, T̄ the
 /// mean of the wrenches that were sent in between, each held for one tick; all about the handle's origin in the
-/// device's base frame, so that neither scale nor registration enters.
+/// device's base frame, so that neither scale nor registration enters, nor navigation.
 ///   E += -(F̄ · Δx + T̄ · Δφ)   [J]
 /// That is exact where one wrench was held: what the controller has taken in since the trial began. A passive one keeps
 /// E ≥ 0; what its springs hold counts as taken in and comes back. Rotation: with T̄ constant in base axes, exact to
@@ -38,7 +39,8 @@ namespace passung::tick {
 ///
 /// Stage, of every scene: E and the handle's velocity, from the sample and what was sent.
 void observeEnergy(const HandModel& model, const InputGuard& guard, const HandSample& hand, const Grip& grip,
-                   const SentWrench& sent, EnergyAccounts& accounts, EnergyRecord& record) noexcept;
+                   const HandMapping& mapping, const SentWrench& sent, EnergyAccounts& accounts,
+                   EnergyRecord& record) noexcept;
 inline constexpr StageOf kEnergyAccount{
     observeEnergy,
     {.name = "energy account",

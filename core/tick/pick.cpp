@@ -89,6 +89,17 @@ double shareOf(const HandModel& model, const Vec3& own, const Vec3& other) noexc
     return square > 0.0 ? std::clamp((model.centre - other).dot(between) / square, 0.0, 1.0) : 0.5;
 }
 
+/// The part is elsewhere in the handle, which has not moved (navigation.h).
+void regrip(const Pose& X_DG, const Vec3& p_GC, HandState& hand) noexcept {
+    const Pose change = hand.X_DG.inverse() * X_DG;
+    hand.X_DG = X_DG;
+    hand.X_DG.q.normalize();
+    hand.p_GC = p_GC;
+    hand.sample.X_WH = hand.sample.X_WH * change;
+    hand.clutch.noted = false;
+    hand.touching = false;
+}
+
 /// The part is where it rests, with nothing known of its surroundings, and is held at one point.
 void placePart(const HandModel& model, const std::vector<Pose>& X_WP, HandState& hand) noexcept {
     const Pose& X = X_WP[model.body];
@@ -144,9 +155,7 @@ public:
         const Pose X_DP = X_WD.inverse() * state_.X_WP[body];
         hold_.body = body;
         forgetPast(hand_);
-        hand_.X_DG = model.registration.X_DH * X_DP;
-        hand_.X_DG.q.normalize();
-        hand_.p_GC = X_DP.inverse().p;
+        regrip(model.registration.X_DH * X_DP, X_DP.inverse().p, hand_);
         if (follows) {
             hold_.follows = true;
             hold_.partner = holder;
@@ -172,8 +181,9 @@ public:
         if (partner != Hold::kNoHand) leaveTo(partner, body, !followed);
         const HandModel& model = model_.hand(number_, kNoBody);
         forgetPast(hand_);
-        static_cast<Grip&>(hand_) = {};
-        hand_.X_DG = model.registration.X_DH;
+        regrip(model.registration.X_DH, Vec3::Zero(), hand_);
+        hand_.shared = false;
+        hand_.share = 1.0;
         hand_.metric = motion::Metric{model.metric_radius};
     }
 
@@ -221,7 +231,7 @@ void pickAndLetGo(const TickModel& model, TickState& state, std::span<const Devi
         const TickFrame& frame = outputs[i].frame;
         if (!model.canPick(i) || !frame.input_usable || !state.hands[i].engaged) continue;
         Hold& hold = state.holds[i];
-        const bool was_down = std::exchange(hold.down, (readings[i].buttons >> model.pick.button & 1u) != 0);
+        const bool was_down = std::exchange(hold.down, (readings[i].buttons >> (model.pick.button - 1) & 1u) != 0);
         const bool goes_down = hold.down && !was_down, goes_up = was_down && !hold.down;
         ClosingHand hand(model, state, i);
         if (hold.body != kNoBody) {

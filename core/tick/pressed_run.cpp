@@ -15,6 +15,7 @@ namespace passung::tick {
 
 namespace {
 
+constexpr double kNoDrift = 1e-12;                // share: nothing moves
 constexpr double kPressed = 2e-3, kSlide = 3e-3;  // [m]
 
 constexpr double kNearest = 1e-3, kFarthest = 10.0;  // [m] in which a contact is looked for
@@ -64,10 +65,13 @@ Vec3 wayToContact(const HandModel& model, HandState& state) {
     return -(answer.phi + kPressed) * answer.normal_W;
 }
 
-/// Poses are those of the held part: the registration has nothing to do.
+/// Poses are those of the held part: the registration has nothing to do, and a drift would lead elsewhere. The stages
+/// stay.
 scene::Scene unregistered(scene::Scene scene) {
-    scene.spec.registration = scene::Registration{};
-    for (scene::HandSpec& hand : scene.spec.other_hands) hand.registration = scene::Registration{};
+    scene::dropRegistrations(scene.spec);
+    const auto stay = [](scene::Drift& drift) { drift.share = std::min(drift.share, kNoDrift); };
+    stay(scene.spec.effects.navigation.drift);
+    for (scene::HandSpec& hand : scene.spec.other_hands) stay(hand.navigation.drift);
     return scene;
 }
 

@@ -39,6 +39,10 @@ void mixOutputs(std::uint64_t& hash, const TickFrame& frame, const Pose& X_WG) n
     mix(hash, std::bit_cast<std::uint64_t>(frame.energy));
     // Only where it is known: hashes of scenes without one are as they were before there was a gap.
     if (!std::isnan(frame.proxy_gap)) mix(hash, std::bit_cast<std::uint64_t>(frame.proxy_gap));
+    if (!std::isnan(frame.scale)) {  // likewise
+        mix(hash, Vec3(frame.scale, frame.clutched ? 1.0 : 0.0, 0.0));
+        mix(hash, Pose{frame.turn, frame.offset});
+    }
     mix(hash, std::uint64_t{frame.status} << 32 | frame.contacts);
     mix(hash, std::uint64_t{frame.iterations} << 32 | frame.nodes_visited);
 }
@@ -227,6 +231,10 @@ TickRecord makeRecord(std::int64_t tick, const DeviceReading& reading, const Tic
     record.nodes_visited = frame.nodes_visited;
     record.hand_energy_J = static_cast<float>(reading.hand_energy_J);
     record.held = output.held;
+    record.navigation_clutched = frame.clutched ? 1u : 0u;
+    record.navigation_scale = static_cast<float>(frame.scale);
+    store(record.navigation_offset_m, frame.offset);
+    store(record.navigation_quaternion, frame.turn);
     return record;
 }
 

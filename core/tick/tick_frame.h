@@ -18,14 +18,23 @@ struct Reading {
     DeviceReading reading;
 };
 
-/// Where the hand is. Owner: input guard.
+/// Where the hand is. Handed on: the input guard says it, navigation moves X_WH.
 struct HandSample {
+    static constexpr bool kHandedOn = true;
     Pose X_WH;                  // held part where the device asks it to be, after the input guard
     bool input_usable = false;  // false: the output is zero
     bool relocated = false;     // the device is believed to be where it cannot have come from: the past is void
     // Periods between this tick's sample and the good one before it; 0: no new sample (X_WH is held), nothing has
     // moved.
     std::int64_t sample_periods = 0;
+};
+
+/// How the device's space lies in the scene (navigation.h). Owner: navigation.
+struct MappingRecord {
+    bool clutched = false;
+    double scale = std::numeric_limits<double>::quiet_NaN();  // s; NaN: the scene has no navigation
+    Vec3 offset = Vec3::Zero();                               // R_WB o, scene axes [m]
+    Quat turn = Quat::Identity();                             // Q
 };
 
 /// Owner: contacts at the hand, of area-weighted penalty.

@@ -7,7 +7,7 @@ Wrench weightOf(const HandModel& model, const Quat& R_WG) noexcept {
 }
 
 Hanging hangingOf(const HandModel& model, const Grip& grip) noexcept {
-    Hanging hanging{grip.share * (model.registration.X_WB.q.conjugate() * model.weight), Vec3::Zero()};
+    Hanging hanging{model.registration.X_WB.q.conjugate() * model.weight, Vec3::Zero()};
     const bool turns = model.limits.actuates_torque && model.limits.max_torque != 0.0;
     if (turns) hanging.p_D = grip.X_DG * (model.hangsTurned() && !grip.shared ? model.centre : grip.p_GC);
     return hanging;

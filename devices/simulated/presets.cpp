@@ -138,6 +138,7 @@ DeviceParams falcon() {
         .vendor_rotational_stiffness = {0.0, kAbsent},
         .recommended_damping = {5.0, kProposed},
         .recommended_rotational_damping = {0.0, kAbsent},
+        .buttons = {4.0, kRecalled},
     };
 }
 
@@ -198,6 +199,7 @@ DeviceParams touch() {
         .vendor_rotational_stiffness = {0.0, kAbsent},
         .recommended_damping = {4.0, kDriver},
         .recommended_rotational_damping = {0.0, kAbsent},
+        .buttons = {2.0, kRecalled},
     };
 }
 
@@ -269,6 +271,7 @@ DeviceDescription describe(const DeviceParams& p) {
     d.workspace_radius_m = p.workspace_radius.value;
     d.recommended_damping_Ns_per_m = p.recommended_damping.value;
     d.recommended_rotational_damping_Nms_per_rad = p.recommended_rotational_damping.value;
+    if (p.buttons.value > 0.0) d.buttons = static_cast<int>(p.buttons.value);
 
     d.mechanism = DeviceMechanism{.mass_kg = p.mass.value,
                                   .inertia_kg_m2 = p.inertia.value,

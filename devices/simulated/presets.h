@@ -41,6 +41,7 @@ struct DeviceParams {
     Sourced vendor_rotational_stiffness;     // [N·m/rad]
     Sourced recommended_damping;             // of the wall, at which the stable stiffness is stated [N·s/m]
     Sourced recommended_rotational_damping;  // [N·m·s/rad]
+    Sourced buttons = {};                    // of the handle; 0 = not known
 
     /// Everything out of range; key = field.
     std::vector<Error> validate() const;

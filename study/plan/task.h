@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <variant>
 #include <vector>
@@ -38,6 +39,7 @@ struct FreePlacementTask {
     double position_tolerance = 0.005;  // [m] within both it is a success
     double angle_tolerance = 0.1;       // [rad]
     bool round = false;                 // turning about the part's z axis is no error
+    std::uint32_t other_buttons = 0;    // of the scene's effects, as in DeviceReading: they confirm nothing
 };
 
 /// What a simulated person compares in the intervals of a pair.

@@ -70,11 +70,35 @@ void readSecondary(const Node& table, plan::Condition& condition, Errors& errors
         read.fail("button", "must be 3 or above: the first two answer the pair");
 }
 
+/// The buttons of the first hand's effects, which answer nothing.
+void checkButtons(const Node& scene, plan::Condition& condition, Errors& errors) {
+    const scene::Navigation& navigation = condition.scene.effects.navigation;
+    const bool pair = std::holds_alternative<plan::DiscriminationPairTask>(condition.task.form);
+    const auto check = [&](const char* effect, int button) {
+        if (button == 0) return;
+        if (auto* placement = std::get_if<plan::FreePlacementTask>(&condition.task.form))
+            placement->other_buttons |= 1u << (button - 1);
+        const char* problem = pair && button <= 2 ? "must be 3 or above: the first two answer the pair"
+                              : condition.secondary.any() && button == condition.secondary.button
+                                  ? "is that of the secondary task"
+                                  : nullptr;
+        if (problem == nullptr) return;
+        const Node* at = &scene;
+        for (const char* key : {"effects", effect, "button"})
+            if (const Node* inner = at->find(key)) at = inner;
+        errors.push_back(
+            errorAt(at->place, fmt::format("scene.effects.{}.button", effect), std::to_string(button), problem));
+    };
+    check("clutch", navigation.clutch.button);
+    check("position_scale", navigation.second_scale.button);
+}
+
 }  // namespace
 
 void readConditionExtras(const StudyTables& tables, plan::Condition& condition, Errors& errors) {
     readFeedback(tables.feedback, condition, errors);
     readSecondary(tables.secondary, condition, errors);
+    checkButtons(tables.scene, condition, errors);
     // The table's other keys are the task reader's: looked up without a reader of its own.
     const Node* timed_by = tables.task.find("timed_by");
     if (timed_by == nullptr) return;

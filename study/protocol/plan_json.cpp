@@ -123,18 +123,31 @@ std::string startGateJson(const scene::StartGate& gate) {
         .str();
 }
 
+void addNavigation(const scene::Navigation& navigation, JsonObject& json) {
+    const auto& [clutch, second_scale, drift] = navigation;
+    if (clutch.button > 0)
+        json.json("clutch",
+                  JsonObject().integer("button", clutch.button).boolean("orientation", clutch.orientation).str());
+    if (second_scale.button > 0)
+        json.json("position_scale",
+                  JsonObject().integer("button", second_scale.button).number("scale", second_scale.scale).str());
+    if (drift.share > 0.0)
+        json.json("drift", JsonObject().number("share", drift.share).number("radius_m", drift.radius).str());
+}
+
 /// The hands but the first, with their devices.
 std::string otherHandsJson(const plan::Condition& condition) {
     std::vector<std::string> hands;
     for (std::size_t i = 0; i < condition.scene.other_hands.size(); ++i) {
         const scene::HandSpec& hand = condition.scene.other_hands[i];
-        hands.push_back(JsonObject()
-                            .text("hand", hand.name)
-                            .text("device", condition.other_devices.at(i))
-                            .json("limits", limitsJson(hand.limits))
-                            .json("registration", registrationJson(hand.registration))
-                            .json("start_gate", startGateJson(hand.start_gate))
-                            .str());
+        JsonObject json;
+        json.text("hand", hand.name)
+            .text("device", condition.other_devices.at(i))
+            .json("limits", limitsJson(hand.limits))
+            .json("registration", registrationJson(hand.registration))
+            .json("start_gate", startGateJson(hand.start_gate));
+        addNavigation(hand.navigation, json);
+        hands.push_back(json.str());
     }
     return jsonList(hands);
 }
@@ -157,6 +170,7 @@ std::string effectsJson(const scene::Effects& effects) {
                               .text("closed", effects.pick.on_press ? "on_press" : "while_down")
                               .text("let_go", effects.pick.locks ? "lock" : "leave")
                               .str());
+    addNavigation(effects.navigation, json);
     return json.str();
 }
 

@@ -112,7 +112,10 @@ private:
         const double slack = std::max(scene_.contact.tolerance, placement.position_tolerance);
         for (const scene::PartSpec& other : scene_.parts)
             overlapAt(placement.X_WGoal, other, slack, at, "task.position");
-        const double quantum = scene_.limits.quantum * scene_.registration.scale;
+        const scene::SecondScale& second = scene_.effects.navigation.second_scale;
+        const double scale =
+            second.button > 0 ? std::min(second.scale, scene_.registration.scale) : scene_.registration.scale;
+        const double quantum = scene_.limits.quantum * scale;
         if (placement.position_tolerance < quantum)
             fail(valueOf("position_tolerance_mm"), "task.position_tolerance_mm",
                  fmt::format("is finer than an encoder step of {}: {}", device_.name, millimetres(quantum)));
@@ -128,12 +131,20 @@ private:
         const Vec3 middle = (r.X_WB * Pose{handle, Vec3::Zero()} * r.X_DH).p;  // of all places of the held part
         const double away = geometries_.signedDistance(*target_, target_->X_WP.inverse() * middle);
         const double reached = device_.workspace_radius_m * r.scale + held->longest();
-        if (away > reached)
+        if (away > reached && !roams())
             fail(valueOf("target"), "task.target",
                  fmt::format("is {} from the middle of the workspace of {}, where the held part touches what is within "
                              "{}{}",
                              millimetres(away), device_.name, millimetres(reached), unitHint(away)));
     }
+
+    /// The hand gets to any place of the scene (core/tick/navigation.h); a trial begins where the registration says.
+    bool roams() const {
+        const scene::Navigation& navigation = scene_.effects.navigation;
+        return navigation.clutch.button > 0 || navigation.drift.share > 0.0 ||
+               scene_.hand(0).largestScale() > scene_.registration.scale;
+    }
+    static bool same(const Pose& a, const Pose& b) { return a.p == b.p && a.q.coeffs() == b.q.coeffs(); }
 
     /// Where the handle is when the held part is at `X_WH` [m], device space.
     Vec3 handleAt(const Pose& X_WH) const {
@@ -145,6 +156,7 @@ private:
         reach(X_WH, slack, at, std::string(key), what);
     }
     void reach(const Pose& X_WH, double slack, const Node& at, const std::string& key, const char* what) {
+        if (roams() && !same(X_WH, held_.X_WP)) return;
         const double far = handleAt(X_WH).norm(), radius = device_.workspace_radius_m;
         if (far <= radius + slack / scene_.registration.scale + kRounding) return;
         const double scale = scene_.registration.scale;
@@ -199,7 +211,8 @@ private:
                  "scene.start_gate.position_tolerance_mm",
                  fmt::format("is finer than an encoder step of {}: {}", device_.name, millimetres(quantum)));
         const double farthest = (handleAt(held_.X_WP).norm() + device_.workspace_radius_m) * scene_.registration.scale;
-        if (task_.leave_radius >= farthest && !std::holds_alternative<plan::DiscriminationPairTask>(task_.form))
+        if (task_.leave_radius >= farthest && !roams() &&
+            !std::holds_alternative<plan::DiscriminationPairTask>(task_.form))
             fail(valueOf("leave_radius_mm"), "task.leave_radius_mm",
                  fmt::format("no way on {} leaves this sphere: at most {}", device_.name, millimetres(farthest)));
     }
@@ -212,7 +225,7 @@ private:
                              length / kFastest));
         const double across = 2.0 * device_.workspace_radius_m * scene_.registration.scale;
         const bool direct = !std::holds_alternative<plan::ContourFollowingTask>(task_.form);
-        if (direct && length > across)
+        if (direct && length > across && !roams())
             warn(fmt::format("the way from the start to the target, {}, is longer than the workspace of {}, {}{}",
                              millimetres(length), device_.name, millimetres(across), unitHint(length)));
     }

@@ -26,6 +26,7 @@ inline constexpr std::array kSceneKeys{
     Key{"hand", "name", Name, kAny, "", "!", "Name of the hand, unique; `hand` of a part, records and exports use it."},
     Key{"hand", "device", Table, kAny, "", "(the first hand's)", "As `[device]`."},
     Key{"hand", "registration", Table, kAny, "", "(its defaults)", "As `[registration]`."},
+    Key{"hand", "effects", Table, kAny, "", "(those of `[effects]`)", "The hand's own `clutch`, `position_scale` and `drift`, in place of those of `[effects]`; buttons are those of its own device."},
     Key{"hand", "start_gate", Table, kAny, "", "(no gate)", "As `[start_gate]`: contact starts for each hand when it holds its own start pose."},
 
     Key{"part_file", "unit", Choice, kAny, "um|mm|cm|m|in", "(the caller's)", "Unit of lengths without one in their key."},
@@ -164,6 +165,22 @@ inline constexpr std::array kSceneKeys{
     Key{"effects", "weight", Table, kAny, "", "(none)", "Weight of the held part, by its density_kg_per_m3: felt in the air, not where the part lies. The part hangs from the hand by its weight over the stiffness: `explain` says how far. It has no inertia."},
 
     Key{"effects", "pick", Table, kAny, "", "(none)", "Hands pick parts up and let them go, by a button: a hand closes on the nearest pickable part, and the coupling holds it where the hand's point was."},
+    Key{"effects", "clutch", Table, kAny, "", "(none)", "While its button is held the hand moves and the part stays, as a mouse that is lifted; let go, the part goes on from there without a jump. The wrench fades within 50 ms, at once where the hand yields to it, and a coupling relaxes, so that no energy is given out."},
+    Key{"effects", "position_scale", Table, kAny, "", "(none)", "Another scale than the registration's while its button is held. Changes only while nothing touches: in contact a smaller scale would give back more energy than was put in."},
+    Key{"effects", "drift", Table, kAny, "", "(none)", "Workspace drift control (Conti and Khatib 2005): while the hand moves, and nothing touches, the scene moves under it by a share of its speed, away from the middle of the device's workspace on the hand's side: who keeps the part in sight brings the hand back to the middle."},
+
+    Key{"hand_effects", "clutch", Table, kAny, "", "(none)", "As in `[effects]`."},
+    Key{"hand_effects", "position_scale", Table, kAny, "", "(none)", "As in `[effects]`."},
+    Key{"hand_effects", "drift", Table, kAny, "", "(none)", "As in `[effects]`."},
+
+    Key{"effects.clutch", "button", Integer, from(1, scene::kButtons), "", "!", "Number of the device's button, from 1. No other effect and no answer of the task may have it."},
+    Key{"effects.clutch", "orientation", Boolean, kAny, "", "true", "True: the part keeps its orientation as well, and the hand may turn to a better one. False: the part goes on turning with the hand, about the handle."},
+
+    Key{"effects.position_scale", "button", Integer, from(1, scene::kButtons), "", "!", "As `button` of the clutch."},
+    Key{"effects.position_scale", "scale", Number, from(0.001, 1000), "", "!", "Metres in the scene per metre of the device while the button is held. The hand feels the stiffness times the larger of this and the registration's: so much less is the stable maximum."},
+
+    Key{"effects.drift", "share", Number, from(0, scene::kMostDrift), "", "!", "Speed of the drift per speed of the hand, as a part of it; 0: none."},
+    Key{"effects.drift", "radius_mm", Number, from(1, 10000), "", "(the device's workspace; without a device preset 100)", "Distance of the handle from the middle of the workspace from which on the drift has its whole share; nearer, in proportion."},
 
     Key{"effects.passivity_controller", "max_damping_Ns_per_m", Number, above(0), "", "!", "Largest damping; a mass m cannot bear more than about m / (1 ms)."},
 
@@ -172,7 +189,7 @@ inline constexpr std::array kSceneKeys{
     Key{"effects.transients", "decay_ms", Number, aboveUpTo(0, 1000), "", "!", "Time in which the vibration falls to 37 %."},
 
     Key{"effects.pick", "reach_mm", Number, aboveUpTo(0, 1000), "", "!", "Largest distance of a part's surface from the hand's point, the origin of what the registration puts into the handle."},
-    Key{"effects.pick", "button", Integer, from(0, scene::kMostButtons - 1), "", "0", "Button of the device, counted from 0."},
+    Key{"effects.pick", "button", Integer, from(1, scene::kButtons), "", "1", "Number of the device's button, from 1. No other effect may have it."},
     Key{"effects.pick", "closed", Choice, kAny, "while_down|on_press", "while_down", "while_down: the hand is closed while the button is down. on_press: a press closes it, the next one opens it."},
     Key{"effects.pick", "let_go", Choice, kAny, "leave|lock", "leave", "leave: a part stays where it is let go, and can be picked up again. lock: it stays there for good."},
 

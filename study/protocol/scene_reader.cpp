@@ -134,16 +134,19 @@ ResolvedStiffness resolveStiffness(const TableReader& read, const char* key, dou
     return {node->number, limited ? node->number / maximum : 1.0};
 }
 
-/// `scale`: of the registration. A handle that moves by d moves the held part by s d, and feels K s d + B s v: so a
-/// stiffness K is as stable as K s without a scale, at a damping B that is what the device recommends per s.
-void readCoupling(const TableReader& read, const DeviceDescription* device, bool device_named, double scale,
-                  scene::ContactSpec& contact) {
+/// Of the hand's largest scale s, the registration's or that of position_scale. A handle that moves by d moves the held
+/// part by s d, and feels K s d + B s v: so a stiffness K is as stable as K s without a scale, at a damping B that is
+/// what the device recommends per s. At a smaller scale both are less in the same ratio, and farther from the border.
+void readCoupling(const TableReader& read, const DeviceDescription* device, bool device_named,
+                  const scene::HandSpec& hand, scene::ContactSpec& contact) {
+    const double scale = hand.largestScale();
+    const char* const whose = scale > hand.registration.scale ? "effects.position_scale" : "the registration's scale";
     const double maximum = device != nullptr ? device->stable_stiffness_N_per_m / scale : 0.0;
     const double rotational_maximum = device != nullptr ? device->stable_rotational_stiffness_Nm_per_rad : 0.0;
     const auto resolve = [&](const char* key, double limit, double otherwise) {
         const bool linear = limit == maximum && scale != 1.0;
         return resolveStiffness(read, key, limit, device, device_named, otherwise,
-                                linear ? fmt::format(" per the registration's scale of {:.6g}", scale) : "");
+                                linear ? fmt::format(" per {} of {:.6g}", whose, scale) : "");
     };
     double fraction = 1.0;
     contact.stiffness = maximum > 0.0 ? maximum : kDefaultStiffness;
@@ -193,7 +196,7 @@ void checkStability(const TableReader& device_table, const TableReader& contact_
         if (!(std::abs(damping - recommended) <= 1e-9 * recommended))
             refuse(contact_table, key, fmt::format("leave it out or set the recommended {}", recommended));
     };
-    const double scale = hand.registration.scale;
+    const double scale = hand.largestScale();
     if (linear) checkDamping("damping_Ns_per_m", contact.damping, device->recommended_damping_Ns_per_m / scale);
     if (rotational)
         checkDamping("rotational_damping_Nms_per_rad", contact.rotational_damping,
@@ -213,7 +216,7 @@ void checkOtherStiffness(const TableReader& hand_table, const TableReader& conta
                                                   "it, or contact.allow_unstable = true",
                                                   device->name, key, maximum, stiffness));
     };
-    check("stiffness_N_per_m", contact.stiffness, device->stable_stiffness_N_per_m / hand.registration.scale);
+    check("stiffness_N_per_m", contact.stiffness, device->stable_stiffness_N_per_m / hand.largestScale());
     check("rotational_stiffness_Nm_per_rad", contact.rotational_stiffness,
           device->stable_rotational_stiffness_Nm_per_rad);
 }
@@ -237,7 +240,7 @@ void checkSizes(const TableReader& contact_table, const scene::SceneSpec& scene,
 }
 
 scene::ContactSpec readContact(const TableReader& read, const DeviceDescription* device, bool device_named,
-                               double scale) {
+                               const scene::HandSpec& hand) {
     scene::ContactSpec contact;
     const auto method = read.text("method");
     contact.method = method == "penalty"      ? scene::ContactMethod::Penalty
@@ -251,7 +254,7 @@ scene::ContactSpec readContact(const TableReader& read, const DeviceDescription*
     contact.variant = variant == "raw"             ? scene::PenaltyVariant::Raw
                       : variant == "area_weighted" ? scene::PenaltyVariant::AreaWeighted
                                                    : scene::PenaltyVariant::MaxNormalised;
-    readCoupling(read, device, device_named, scale, contact);
+    readCoupling(read, device, device_named, hand, contact);
     readPenaltyCoupling(read, device, contact);
     contact.area_stiffness = read.number("area_stiffness_N_per_m3");
     contact.tolerance = read.numberOr("tolerance_um", contact.tolerance);
@@ -343,6 +346,35 @@ void checkHands(const TableReader& read, const TableReader& contact_table, const
 }
 
 bool beginsEmpty(const scene::SceneSpec& scene, std::size_t hand) { return scene.heldBy(hand) == scene.parts.size(); }
+/// The number of a button that the device has.
+int readButton(const TableReader& read, const DeviceDescription* device) {
+    const auto button = static_cast<int>(read.integer("button"));
+    if (device != nullptr && device->buttons && button > *device->buttons)
+        read.fail("button",
+                  fmt::format("{} has {} button{}", device->name, *device->buttons, *device->buttons == 1 ? "" : "s"));
+    return button;
+}
+
+scene::Navigation readNavigation(const TableReader& read, const DeviceDescription* device, Errors& errors) {
+    scene::Navigation navigation;
+    if (const Node* node = read.node("clutch")) {
+        const TableReader clutch(*node, {"effects.clutch"}, read.pathOf("clutch"), errors);
+        navigation.clutch = {readButton(clutch, device), clutch.boolean("orientation")};
+    }
+    if (const Node* node = read.node("position_scale")) {
+        const TableReader scale(*node, {"effects.position_scale"}, read.pathOf("position_scale"), errors);
+        navigation.second_scale = {readButton(scale, device), scale.numberOr("scale", 1.0)};
+        if (scale.has("button") && navigation.second_scale.button == navigation.clutch.button)
+            scale.fail("button", "is the clutch's");
+    }
+    if (const Node* node = read.node("drift")) {
+        const TableReader drift(*node, {"effects.drift"}, read.pathOf("drift"), errors);
+        const double workspace = device != nullptr ? device->workspace_radius_m : navigation.drift.radius;
+        navigation.drift.share = drift.numberOr("share", 0.0);
+        navigation.drift.radius = drift.numberOr("radius_mm", workspace);
+    }
+    return navigation;
+}
 
 /// The scene's hands but the first, and their devices.
 void readOtherHands(const TableReader& read, std::span<const std::string> names, double units,
@@ -366,7 +398,11 @@ void readOtherHands(const TableReader& read, std::span<const std::string> names,
         const DeviceDescription* device = findDevice(device_table, devices);
         scene::HandSpec hand{readLimits(device_table, device), readRegistration(open("registration"), units),
                              readStartGate(open("start_gate"), units, beginsEmpty(content.scene, i + 1), errors),
-                             names[i]};
+                             names[i], content.scene.effects.navigation};
+        if (hand_table.has("effects")) {
+            const TableReader own(*hand_table.node("effects"), {"hand_effects"}, hand_table.pathOf("effects"), errors);
+            hand.navigation = readNavigation(own, device, errors);
+        }
         checkStability(device_table, contact_table, device, content.scene.contact, hand);
         checkOtherStiffness(hand_table, contact_table, device, content.scene.contact, hand);
         content.other_devices.push_back(device_table.text("preset"));
@@ -374,8 +410,9 @@ void readOtherHands(const TableReader& read, std::span<const std::string> names,
     }
 }
 
-scene::Effects readEffects(const TableReader& read, Errors& errors) {
+scene::Effects readEffects(const TableReader& read, const DeviceDescription* device, Errors& errors) {
     scene::Effects effects;
+    effects.navigation = readNavigation(read, device, errors);
     if (const Node* node = read.node("passivity_controller")) {
         const TableReader controller(*node, {"effects.passivity_controller"}, read.pathOf("passivity_controller"),
                                      errors);
@@ -397,9 +434,11 @@ scene::Effects readEffects(const TableReader& read, Errors& errors) {
     if (const Node* node = read.node("pick")) {
         const TableReader pick(*node, {"effects.pick"}, read.pathOf("pick"), errors);
         effects.pick = {.reach = pick.number("reach_mm"),
-                        .button = static_cast<int>(pick.integer("button")),
+                        .button = readButton(pick, device),
                         .on_press = pick.text("closed") == "on_press",
                         .locks = pick.text("let_go") == "lock"};
+        for (const int taken : {effects.navigation.clutch.button, effects.navigation.second_scale.button})
+            if (taken == effects.pick.button) pick.fail("button", "is another effect's");
     }
     return effects;
 }
@@ -444,8 +483,6 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
         for (const scene::PartSpec& part : content.scene.parts)
             for (Error& problem : geometries.problems(part)) errors.push_back(std::move(problem));
     content.parts_sound = content.parts_sound && errors.size() == before_parts;
-    content.scene.effects = readEffects(open("effects"), errors);
-    if (content.parts_sound) checkPicking(read, open("effects"), content.scene, errors);
     const std::size_t before_device = errors.size();
     const auto device_table = open("device");
     const DeviceDescription* device = findDevice(device_table, reading.devices);
@@ -455,8 +492,9 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     const auto contact_table = open("contact");
     const auto registration_table = open("registration");
     content.scene.registration = readRegistration(registration_table, units);
-    content.scene.contact =
-        readContact(contact_table, device, device_table.has("preset"), content.scene.registration.scale);
+    content.scene.effects = readEffects(open("effects"), device, errors);
+    if (content.parts_sound) checkPicking(read, open("effects"), content.scene, errors);
+    content.scene.contact = readContact(contact_table, device, device_table.has("preset"), content.scene.hand(0));
     readOtherHands(read, other_hands, units, reading.devices, device_table, contact_table, content, errors);
     if (content.scene.contact.geometry == scene::Geometry::Auto) content.scene.contact.geometry = reading.automatic;
     if (const auto problem = scene::geometryProblem(content.scene); content.parts_sound && problem)

@@ -63,7 +63,7 @@ TrialRule::Verdict TrialRule::judge(Contour& form, const TickRecord& record, std
 
 TrialRule::Verdict TrialRule::judge(Placement& form, const TickRecord& record, std::int64_t,
                                     std::vector<TrialEvent>&) const {
-    if (form.buttons.pressedIn(record) == 0) return std::nullopt;
+    if ((form.buttons.pressedIn(record) & ~form.task.other_buttons) == 0) return std::nullopt;
     const auto error = measures::placementError(record, X_WT_, form.task.round);
     const bool there = error.position <= form.task.position_tolerance && error.angle <= form.task.angle_tolerance;
     return there ? TrialState::Succeeded : TrialState::Failed;

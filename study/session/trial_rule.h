@@ -29,7 +29,7 @@ struct TrialEvent {
 /// - peg_in_hole: SuccessRule;
 /// - narrow_passage: success once the held part is through (measures::PassageWatch);
 /// - contour_following: success once the asked share is followed (measures::ContourWatch);
-/// - free_placement: a button of the device confirms; success within both tolerances, else failure;
+/// - free_placement: a button of the device that no effect has confirms; success within both tolerances, else failure;
 /// - discrimination_pair: success with the answer, whichever it is; timeout if it does not come in time; aborted if the
 ///   hand does not come back to the start between the intervals.
 /// Time-outs of the others are the course's.

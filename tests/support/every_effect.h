@@ -12,8 +12,11 @@ inline scene::Effects everyEffect() {
         .transients = {.amplitude = 5.0, .frequency = 150.0, .decay = 0.01},
         .weight = {.gravity = Vec3(0.0, 0.0, -scene::kStandardGravity)},
         .pick = {},  // no stage: it changes what a hand holds (pick_test.cpp)
+        .navigation = {.clutch = {.button = 2},
+                       .second_scale = {.button = 3, .scale = 0.5},
+                       .drift = {.share = 0.1, .radius = 0.05}},
     };
-    [[maybe_unused]] const auto& [passivity_damping, transients, weight, pick] = effects;
+    [[maybe_unused]] const auto& [passivity_damping, transients, weight, pick, navigation] = effects;
     return effects;
 }
 

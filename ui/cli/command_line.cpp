@@ -371,7 +371,9 @@ private:
         addImport(sub, simulate_.import_limits);
         sub->add_option("--trajectory", simulate_.trajectories,
                         "CSV of poses of the held part in the world, in seconds and metres; header: "
-                        "t_s,x_m,y_m,z_m,qw,qx,qy,qz. Once for each hand of the scene, in their order")
+                        "t_s,x_m,y_m,z_m,qw,qx,qy,qz, and for effects of buttons a further column, buttons: a "
+                        "number, bit 0 the first button, until the next row. Once for each hand of the scene, in their "
+                        "order")
             ->required()
             ->allow_extra_args(false);
         sub->add_option("--out", simulate_.outs,

@@ -27,7 +27,11 @@ constexpr const char* kHeader =
     "tick,t_s,device_x_m,device_y_m,device_z_m,device_qw,device_qx,device_qy,device_qz,proxy_x_m,proxy_y_m,proxy_z_m,"
     "proxy_qw,proxy_qx,proxy_qy,proxy_qz,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,proxy_depth_"
     "m,"
-    "device_depth_m,contacts,quality,status,iterations,tick_us,proxy_gap_m,suspended,tick_cpu_us,proxy_lag_m\n";
+    "device_depth_m,contacts,quality,status,iterations,tick_us,proxy_gap_m,suspended,tick_cpu_us,proxy_lag_m";
+/// Of a hand with navigation.
+constexpr const char* kNavigationHeader =
+    ",navigation_clutched,navigation_scale,navigation_x_m,navigation_y_m,navigation_z_m,navigation_qw,navigation_qx,"
+    "navigation_qy,navigation_qz";
 
 /// How long a tick took [µs].
 struct TickTime {
@@ -46,8 +50,12 @@ void writeRow(fmt::memory_buffer& text, std::int64_t tick, const tick::TickOutpu
     fmt::format_to(out, ",{},{},{},{},{},{},{:.3f}", f.proxy_depth, f.hand_depth, f.contacts, f.quality, f.status,
                    f.iterations, us.wall);
     const auto known = [](double value) { return std::isnan(value) ? "NA" : fmt::format("{}", value); };
-    fmt::format_to(out, ",{},{},{:.3f},{}\n", known(f.proxy_gap), (f.status & kSuspended) != 0 ? 1 : 0, us.processor,
+    fmt::format_to(out, ",{},{},{:.3f},{}", known(f.proxy_gap), (f.status & kSuspended) != 0 ? 1 : 0, us.processor,
                    known(f.proxy_lag));
+    if (!std::isnan(f.scale))
+        fmt::format_to(out, ",{},{},{},{},{},{},{},{},{}", f.clutched ? 1 : 0, f.scale, f.offset.x(), f.offset.y(),
+                       f.offset.z(), f.turn.w(), f.turn.x(), f.turn.y(), f.turn.z());
+    fmt::format_to(out, "\n");
 }
 
 /// Where a path leads.
@@ -115,12 +123,9 @@ int simulate(const SimulateArguments& options) {
     }
     // The files hold poses of the held parts in the world, so that the registrations have nothing to do; and the run
     // begins with their first rows, wherever these are.
-    spec->registration = scene::Registration{};
+    scene::dropRegistrations(*spec);
     spec->start_gate = scene::StartGate{};
-    for (scene::HandSpec& hand : spec->other_hands) {
-        hand.registration = scene::Registration{};
-        hand.start_gate = scene::StartGate{};
-    }
+    for (scene::HandSpec& hand : spec->other_hands) hand.start_gate = scene::StartGate{};
     const auto store = run::openBuilds(options.import_limits, showBuilds(progress));
     scene::PartCache cache(store.get());
     progress.show("building the scene");
@@ -129,13 +134,21 @@ int simulate(const SimulateArguments& options) {
     const tick::SceneModels models(*scene);
     tick::SceneSequence ticks(std::array{tick::SceneTurn{&models[0]}});
     std::deque<OutputFile> outs;
-    for (const std::string& path : options.outs) outs.emplace_back(path).write(kHeader);
+    for (std::size_t hand = 0; hand < hands; ++hand) {
+        OutputFile& out = outs.emplace_back(options.outs[hand]);
+        out.write(kHeader);
+        if (spec->hand(hand).navigation.any()) out.write(kNavigationHeader);
+        out.write("\n");
+    }
     std::vector<DeviceReading> readings(hands);
     std::vector<tick::TickOutput> outputs(hands);
     fmt::memory_buffer text;
     for (std::int64_t i = 0; i <= last; ++i) {
-        for (std::size_t hand = 0; hand < hands; ++hand)
-            readings[hand].X_BD = trajectories[hand].at(std::min(i, trajectories[hand].lastTick()));
+        for (std::size_t hand = 0; hand < hands; ++hand) {
+            const std::int64_t at = std::min(i, trajectories[hand].lastTick());
+            readings[hand].X_BD = trajectories[hand].at(at);
+            readings[hand].buttons = trajectories[hand].buttonsAt(at);
+        }
         const std::int64_t processor_begin = threadProcessorNanoseconds();
         const auto begin = std::chrono::steady_clock::now();
         ticks.step(readings, outputs);

@@ -112,6 +112,14 @@ QString orderWord(plan::BlockOrder order) {
     QT_TRANSLATE_NOOP(
         "stages", "effects.weight is set: the proxy hangs from the hand as far as its weight stretches the coupling"),
     QT_TRANSLATE_NOOP("stages", "effects.weight is set: no proxy hangs from the hand, which holds the part itself"),
+    QT_TRANSLATE_NOOP("stages", "navigation"),
+    QT_TRANSLATE_NOOP("stages",
+                      "effects.clutch, effects.position_scale or effects.drift is set: the hand's place in the scene "
+                      "follows them"),
+    QT_TRANSLATE_NOOP("stages", "sign of contact"),
+    QT_TRANSLATE_NOOP("stages", "effects.position_scale or effects.drift is set: both wait while parts touch"),
+    QT_TRANSLATE_NOOP("stages", "clutched wrench"),
+    QT_TRANSLATE_NOOP("stages", "effects.clutch is set: the wrench fades while the clutch is held"),
     QT_TRANSLATE_NOOP("stages", "weight in the hand"),
     QT_TRANSLATE_NOOP("stages", "effects.weight is set: what no contact carries is felt"),
     QT_TRANSLATE_NOOP("stages", "pushes between hands"),

@@ -55,7 +55,7 @@ bool feltThroughTool(const scene::ContactSpec& contact) {
 }
 
 SceneWall translationWall(const DeviceDescription& device, const scene::SceneSpec& scene) {
-    const double scale = scene.registration.scale;
+    const double scale = scene.hand(0).largestScale();
     SceneWall wall{.stiffness = scale * scene.contact.stiffness, .bounds = {}};
     if (!device.mechanism) return wall;
     const int delay = device.delay_ticks + scene.limits.delay_ticks;

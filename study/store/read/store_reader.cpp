@@ -329,6 +329,12 @@ Result<std::vector<QuestionnaireRunRow>> StoreReader::questionnaireRuns() const 
     return guarded(path_, [&] { return readQuestionnaireRuns(*database_); });
 }
 
+Result<bool> StoreReader::hasNavigation() const {
+    return guarded(path_, [&] {
+        return database_->integer("SELECT EXISTS(SELECT 1 FROM stream WHERE stream LIKE 'navigation%')") != 0;
+    });
+}
+
 Result<std::vector<TickRecord>> StoreReader::records(std::int64_t attempt_id, std::size_t hand) const {
     return guarded(path_, [&] {
         std::vector<TickRecord> records;
@@ -338,6 +344,9 @@ Result<std::vector<TickRecord>> StoreReader::records(std::int64_t attempt_id, st
         };
         for (const Chunk& chunk : readChunks(*database_, attempt_id, tickStreamName(hand).c_str(), unpackTicks))
             require(decodeTicks(chunk, records));
+        for (const Chunk& chunk :
+             readChunks(*database_, attempt_id, navigationStreamName(hand).c_str(), unpackNavigation))
+            require(decodeNavigation(chunk, records));
         if (hand > 0) return records;
         for (const Chunk& chunk : readChunks(*database_, attempt_id, "tick_timing", unpackTiming))
             require(decodeTiming(chunk, records));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "core/base/assert.h"
@@ -111,6 +112,21 @@ Layout makeTimingLayout() {
     return layout;
 }
 
+Layout makeNavigationLayout() {
+    Layout layout;
+    layout.add("navigation_clutched", "uint32", "1", "1 while the clutch is held, else 0",
+               offsetof(TickRecord, navigation_clutched));
+    layout.add("navigation_scale", "float32", "1", "Metres in the scene per metre of the device in this tick",
+               offsetof(TickRecord, navigation_scale));
+    layout.addAxes("navigation_", "xyz", "_m", "float32", "m",
+                   "Offset that is added to where the registration and navigation_scale have the handle, scene axes",
+                   offsetof(TickRecord, navigation_offset_m));
+    layout.addAxes("navigation_q", "wxyz", "", "float32", "1",
+                   "Turn of the held part in the handle, before the registration's own",
+                   offsetof(TickRecord, navigation_quaternion));
+    return layout;
+}
+
 const Layout& tickLayout() {
     static const Layout layout = makeTickLayout();
     return layout;
@@ -118,6 +134,11 @@ const Layout& tickLayout() {
 
 const Layout& timingLayout() {
     static const Layout layout = makeTimingLayout();
+    return layout;
+}
+
+const Layout& navigationLayout() {
+    static const Layout layout = makeNavigationLayout();
     return layout;
 }
 
@@ -214,6 +235,18 @@ void decode(const Layout& layout, const Chunk& chunk, std::span<TickRecord> reco
 namespace {
 
 constexpr std::string_view kOtherHand = "tick_hand_";
+constexpr std::string_view kNavigation = "navigation";
+
+/// Fills what `chunk` holds of `records` (ascending ticks).
+Result<Done> decodeBeside(const Layout& layout, const Chunk& chunk, std::span<TickRecord> records) {
+    if (const auto sound = check(layout, chunk); !sound) return sound.errors();
+    for (TickRecord& record : records) {
+        const std::int64_t row = record.tick - chunk.first_tick;
+        if (row < 0 || row >= chunk.count) continue;
+        decode(layout, chunk, std::span(&record, 1), static_cast<std::size_t>(row));
+    }
+    return Done{};
+}
 
 }  // namespace
 
@@ -225,6 +258,18 @@ bool isTickStream(std::string_view name) { return name == "tick" || name.starts_
 
 const std::vector<Channel>& tickChannels() { return tickLayout().channels; }
 const std::vector<Channel>& timingChannels() { return timingLayout().channels; }
+const std::vector<Channel>& navigationChannels() { return navigationLayout().channels; }
+
+std::string navigationStreamName(std::size_t hand) {
+    return std::string(kNavigation) + (hand == 0 ? "" : "_hand_" + std::to_string(hand + 1));
+}
+
+bool isNavigationStream(std::string_view name) { return name.starts_with(kNavigation); }
+
+bool haveNavigation(std::span<const TickRecord> records) {
+    return std::any_of(records.begin(), records.end(),
+                       [](const TickRecord& record) { return !std::isnan(record.navigation_scale); });
+}
 
 std::string encodingText() {
     return "columns-v2: one blob holds n consecutive ticks, tick number of row i = first_tick + i. Time since the "
@@ -250,14 +295,19 @@ std::string channelsJson(const std::vector<Channel>& channels) {
 
 Chunk encodeTicks(std::span<const TickRecord> records) { return encode(tickLayout(), records); }
 Chunk encodeTiming(std::span<const TickRecord> records) { return encode(timingLayout(), records); }
+Chunk encodeNavigation(std::span<const TickRecord> records) { return encode(navigationLayout(), records); }
 
 Chunk packTicks(const Chunk& chunk) { return pack(tickLayout(), chunk); }
 Chunk packTiming(const Chunk& chunk) { return pack(timingLayout(), chunk); }
+Chunk packNavigation(const Chunk& chunk) { return pack(navigationLayout(), chunk); }
 Result<Chunk> unpackTicks(const Chunk& stored, std::string_view encoding) {
     return unpack(tickLayout(), stored, encoding);
 }
 Result<Chunk> unpackTiming(const Chunk& stored, std::string_view encoding) {
     return unpack(timingLayout(), stored, encoding);
+}
+Result<Chunk> unpackNavigation(const Chunk& stored, std::string_view encoding) {
+    return unpack(navigationLayout(), stored, encoding);
 }
 
 Result<Done> decodeTicks(const Chunk& chunk, std::vector<TickRecord>& records) {
@@ -273,13 +323,10 @@ Result<Done> decodeTicks(const Chunk& chunk, std::vector<TickRecord>& records) {
 }
 
 Result<Done> decodeTiming(const Chunk& chunk, std::span<TickRecord> records) {
-    if (const auto sound = check(timingLayout(), chunk); !sound) return sound.errors();
-    for (TickRecord& record : records) {
-        const std::int64_t row = record.tick - chunk.first_tick;
-        if (row < 0 || row >= chunk.count) continue;
-        decode(timingLayout(), chunk, std::span(&record, 1), static_cast<std::size_t>(row));
-    }
-    return Done{};
+    return decodeBeside(timingLayout(), chunk, records);
+}
+Result<Done> decodeNavigation(const Chunk& chunk, std::span<TickRecord> records) {
+    return decodeBeside(navigationLayout(), chunk, records);
 }
 
 std::size_t consecutiveTicks(std::span<const TickRecord> records) {

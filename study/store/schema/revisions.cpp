@@ -219,6 +219,11 @@ constexpr const char* kRevision18 = R"sql(
 ALTER TABLE contact_energy ADD COLUMN hand TEXT;
 )sql";
 
+constexpr const char* kRevision19 = R"sql(
+-- Streams "navigation", "navigation_hand_2" and so on hold what clutch, second scale and drift did in each tick: in
+-- segments with a scene that has one of them.
+)sql";
+
 const std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kFirstSchema, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -245,6 +250,8 @@ const std::array kRevisions = {
     Revision{17, "True overlaps at judged ticks of each attempt", kRevision17, 16},
     // A reader from before takes the ticks of further hands for times, and those for damage.
     Revision{18, "Ticks and energy of further hands", kRevision18, 18},
+    // A reader from before takes these streams for times, and those for damage.
+    Revision{19, "Clutch, scale and drift of each tick", kRevision19, 19},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

@@ -164,6 +164,22 @@ void SessionWriter::insertChunk(const Database& database, std::int64_t stream_id
               Named{"data", std::span<const std::byte>(chunk.data)});
 }
 
+/// Made when it is first needed, in the manner of the hand's stream of ticks.
+std::int64_t SessionWriter::navigationStream(const Database& database, std::size_t hand) {
+    std::vector<std::optional<std::int64_t>>& ids = rows_.navigation_stream_ids;
+    ids.resize(rows_.tick_stream_ids.size());
+    if (ids[hand]) return *ids[hand];
+    const std::string name = navigationStreamName(hand), channels = channelsJson(navigationChannels());
+    database
+        .prepare(
+            "INSERT INTO stream(segment_id, stream, nominal_hz, channels_json, encoding, numerics) "
+            "SELECT segment_id, ?, nominal_hz, ?, encoding, numerics FROM stream WHERE stream_id=?")
+        .bind(name, channels, rows_.tick_stream_ids[hand])
+        .run();
+    ids[hand] = database.lastRowId();
+    return *ids[hand];
+}
+
 void SessionWriter::insertChunks(const Database& database, std::int64_t attempt_id, std::size_t hand,
                                  std::int64_t start_ns, measures::PeriodClock clock,
                                  std::span<const TickRecord> records) {
@@ -176,6 +192,9 @@ void SessionWriter::insertChunks(const Database& database, std::int64_t attempt_
             insertChunk(database, *rows_.timing_stream_id, next_chunk_, attempt_id, t0_ns,
                         packTiming(encodeTiming(run)));
         }
+        if (haveNavigation(run))
+            insertChunk(database, navigationStream(database, hand), next_chunk_, attempt_id, t0_ns,
+                        packNavigation(encodeNavigation(run)));
         for (const TickRecord& record : run) clock.at(record);
         ++next_chunk_;  // a number that a rollback leaves unused does no harm
         records = records.subspan(count);

@@ -461,7 +461,7 @@ TEST_F(Export, WhatAKilledExportLeftIsRemovedByTheNext) {
 TEST(StatusBits, TheCodebookExplainsEveryOne) {
     // Truth: closed form (core/base/tick_record.h)
     std::string formula;
-    for (const Column& column : sampleColumns())
+    for (const Column& column : sampleColumns(false))
         if (column.name == "status") formula = column.formula;
     EXPECT_NE(formula.find("; 65536 = engaged: "), std::string::npos) << formula;
     EXPECT_NE(formula.find(": 1 = bad device input, the last good pose was used; 2 = "), std::string::npos) << formula;
@@ -505,9 +505,14 @@ TEST_F(Export, ADamagedSampleLeavesNothingHalfWritten) {
 
 TEST(ExportSamples, ColumnsAndChannelsAgree) {
     // Truth: invariant: as many cells as columns
-    const fake::CsvFile samples = fake::readCsv(samplesCsv(fake::makeRecords(1, 2), {}));
-    EXPECT_EQ(samples.header.size(), sampleColumns().size());
-    EXPECT_EQ(samples.rows.size(), 2u);
+    auto records = fake::withNavigation(3, fake::makeRecords(1, 2));
+    for (const bool navigation : {true, false}) {
+        const fake::CsvFile samples = fake::readCsv(samplesCsv(records, {}));
+        EXPECT_EQ(samples.header.size(), sampleColumns(navigation).size());
+        EXPECT_EQ(samples.rows.size(), 2u);
+        for (TickRecord& record : records) record.navigation_scale = std::numeric_limits<float>::quiet_NaN();
+    }
+    EXPECT_EQ(sampleColumns(true).size(), sampleColumns(false).size() + 9);
 }
 
 }  // namespace

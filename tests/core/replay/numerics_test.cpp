@@ -56,6 +56,9 @@ constexpr std::uint64_t kSurface = 0x819a7aeb2de9f838u;
 /// The same with weight.
 constexpr std::uint64_t kWeight = 0x3be8ace262a36b3fu;
 
+/// The same with navigation, whose buttons are held now and then.
+constexpr std::uint64_t kNavigation = 0x1210f7c4ccd5dadcu;
+
 constexpr const char* kParts = R"(
 [[part]]
 name = "plate"
@@ -83,6 +86,7 @@ DeviceReading readingAt(int tick, Random& random) {
     reading.fresh = random.below(50) != 0;
     if (random.below(200) == 0) reading.X_BD.p.y() = std::nan("");
     reading.periods = random.below(100) == 0 ? 3 : 1;
+    reading.buttons = tick % 200 > 150 ? 2u : tick % 120 > 70 ? 4u : 0u;
     return reading;
 }
 
@@ -144,6 +148,8 @@ TEST(Numerics, EveryOutputBitOfFixedScenesIsThatOfItsNumber) {
     for (scene::PartSpec& part : spec.parts) part.density = 7850.0;
     spec.effects.weight.gravity = Vec3(0.0, 0.0, -scene::kStandardGravity);
     EXPECT_EQ(hex(hashOf(spec)), hex(kWeight)) << "weight" << advice;
+    spec.effects.navigation = {.clutch = {2, true}, .second_scale = {3, 0.4}, .drift = {0.2, 0.02}};
+    EXPECT_EQ(hex(hashOf(spec)), hex(kNavigation)) << "navigation" << advice;
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ public:
                         Vec3(0.004 * std::sin(2 * t), 0.003 * std::cos(3 * t), 0.012 - 0.006 * t)};
         if (random_.below(100) == 0) reading.X_BD.p.x() = std::nan("");
         if (random_.below(100) == 0) reading.fresh = false;
-        reading.buttons = static_cast<std::uint32_t>(tick_ / 100) & 3u;
+        reading.buttons = static_cast<std::uint32_t>(tick_ / 100) & 7u;
         return reading;
     }
     void command(const Wrench&) noexcept override {}
@@ -111,7 +111,8 @@ TEST(Replayer, ReproducesTwoHandsAndFindsWhereOneDiffers) {
     auto spec = pressing(scene::ContactMethod::GodObject);
     spec.parts[1].held = true;
     spec.parts[1].hand = 1;
-    spec.other_hands.push_back({spec.limits, spec.registration, spec.start_gate, "left"});
+    spec.effects.navigation = test::everyEffect().navigation;
+    spec.other_hands.push_back({spec.limits, spec.registration, spec.start_gate, "left", spec.effects.navigation});
     const test::Bench bench(spec);
     Wobble first, second;
     loop::RecordRing of_first(4096), of_second(4096);
@@ -133,6 +134,16 @@ TEST(Replayer, ReproducesTwoHandsAndFindsWhereOneDiffers) {
     ASSERT_TRUE(differs.first_difference);
     EXPECT_EQ(differs.first_difference->column, "hand 2: force_N[1]");
     EXPECT_EQ(differs.first_difference->tick, 700);
+
+    changed = records;
+    changed[1][650].navigation_clutched ^= 1u;
+    EXPECT_EQ(replay::replayHands(turns, changed).first_difference->column, "hand 2: navigation_clutched");
+    changed = records;
+    changed[0][900].navigation_offset_m[2] = std::nextafter(changed[0][900].navigation_offset_m[2], 1.0f);
+    EXPECT_EQ(replay::replayHands(turns, changed).first_difference->column, "navigation_offset_m[2]");
+    changed = records;
+    changed[0][900].navigation_scale = std::nanf("");  // as from a scene without navigation
+    EXPECT_EQ(replay::replayHands(turns, changed).first_difference->column, "navigation_scale");
 
     auto shorter = records;
     shorter[1].pop_back();

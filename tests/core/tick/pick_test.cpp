@@ -59,7 +59,7 @@ scene::SceneSpec rodsOnTable(const Way& way, const std::vector<Pose>& rods, std:
                               .geometry = Box{kLength, kWidth, kWidth},
                               .X_WP = rods[i],
                               .pickable = true});
-    spec.effects.pick = {.reach = kReach, .button = 3};
+    spec.effects.pick = {.reach = kReach, .button = 4};
     spec.contact.geometry = way.geometry;
     spec.contact.stiffness = kStiffness;
     spec.contact.rotational_stiffness = kTurnStiffness;

@@ -117,6 +117,7 @@ DeviceReading readingAt(int tick, Random& random) {
     DeviceReading reading{{rotationFromVector(0.1 * Vec3(std::sin(9 * t), std::cos(7 * t), std::sin(5 * t))),
                            Vec3(0.006 * std::sin(11 * t), 0.004 * std::sin(6 * t), 0.01 + 0.004 * std::cos(17 * t))}};
     reading.fresh = random.below(20) != 0;
+    reading.buttons = tick % 300 > 240 ? 2u : tick % 170 > 120 ? 4u : 0u;  // the clutch, the second scale
     if (random.below(60) == 0 || tick % 500 > 490) reading.X_BD.p.x() += 0.3;
     if (tick == 0) reading.X_BD.p.z() = 0.3;  // a false first sample: relocated soon after
     return reading;

@@ -12,9 +12,9 @@ namespace {
 
 constexpr const char* kHeader = "t_s,x_m,y_m,z_m,qw,qx,qy,qz\n";
 
-Result<scripted::Trajectory> read(const std::string& rows) {
+Result<scripted::Trajectory> read(const std::string& rows, const std::string& header = kHeader) {
     const auto path = std::filesystem::temp_directory_path() / ("passung_path_" + std::to_string(getpid()) + ".csv");
-    std::ofstream(path) << kHeader << rows;
+    std::ofstream(path) << header << rows;
     return scripted::Trajectory::read(path.string());
 }
 
@@ -52,6 +52,23 @@ TEST(Trajectory, RefusesTimesThatDoNotRiseAndRotationsThatAreNone) {
     EXPECT_FALSE(read("0,0,0,0,0.5,0,0,0\n"));
     EXPECT_FALSE(read("0,nan,0,0,1,0,0,0\n"));
     EXPECT_TRUE(read("0,0,0,0,1,0,0,0\n"));
+}
+
+TEST(Trajectory, PressesTheButtonsOfARowUpToTheNext) {
+    // Truth: closed form: as written from a row's own tick on; without the column none; before the first row its own.
+    const std::string header = "t_s,x_m,y_m,z_m,qw,qx,qy,qz,note,buttons\n";
+    const auto path = read("0.002,0,0,0,1,0,0,0,a,0\n0.3,0,0,0,1,0,0,0,b,5\n0.5,0,0,0,1,0,0,0,c,0\n", header);
+    ASSERT_TRUE(path);
+    for (int tick = 0; tick < 600; ++tick)
+        EXPECT_EQ(path->buttonsAt(tick), tick >= 300 && tick < 500 ? 5u : 0u) << tick;
+    EXPECT_EQ(read("0,0,0,0,1,0,0,0\n")->buttonsAt(0), 0u);
+    for (const char* wrong : {"-1", "1.5", "x", "", "16777216"}) {
+        const auto refused = read(std::string("0,0,0,0,1,0,0,0,a,") + wrong + "\n", header);
+        ASSERT_FALSE(refused) << wrong;
+        EXPECT_EQ(refused.errors().front().key, "buttons");
+        EXPECT_EQ(refused.errors().front().line, 2);
+        EXPECT_EQ(refused.errors().front().value, wrong);
+    }
 }
 
 TEST(Trajectory, TellsTheFirstBadRowsAndHowManyMoreThereAre) {

@@ -32,6 +32,8 @@ TEST(Presets, EveryValueSaysWhereItComesFrom) {
               p.max_force_rate, p.workspace_radius, p.vendor_stiffness, p.vendor_rotational_stiffness,
               p.recommended_damping, p.recommended_rotational_damping})
             EXPECT_FALSE(s.source.empty()) << p.name;
+        EXPECT_EQ(p.buttons.value > 0.0, !p.buttons.source.empty()) << p.name;
+        EXPECT_EQ(describe(p).buttons.value_or(0), p.buttons.value) << p.name;
         EXPECT_FALSE(p.degrees_source.empty());
         EXPECT_FALSE(describe(p).stability_source.empty());
     }

@@ -190,5 +190,30 @@ TEST(StudyTexts, AreThereInEveryLanguageAndForEveryClause) {
     EXPECT_NE(faultOf(read("[text.en]\na = 3\n")).find("must be a text"), std::string::npos);
 }
 
+TEST(ConditionExtras, TellOfButtonsThatTwoWouldAnswerTo) {
+    // Truth: definition: the first two buttons answer a pair, the secondary task has its own.
+    const std::string clutch = "[scene.effects.clutch]\nbutton = 2\n";
+    EXPECT_TRUE(read(clutch)) << faultOf(read(clutch));
+    const std::string second = "[secondary]\nstimulus = \"audio\"\nbutton = 2\n";
+    EXPECT_TRUE(
+        faultOf(read(clutch + second)).ends_with("scene.effects.clutch.button: 2: is that of the secondary task"))
+        << faultOf(read(clutch + second));
+    EXPECT_TRUE(read("[scene.effects.clutch]\nbutton = 3\n" + second));
+    std::string text = "passung = 1\nstudy = { name = \"p\", version = \"1\", seed = 1, participants = 2 }\n[scene]\n";
+    text += "device = { preset = \"" + fakeDevices().front().name + "\" }\n[[scene.part]]\nname = \"plate\"\n";
+    text += "shape = { kind = \"box\", width = 60, depth = 60, height = 30 }\n[[scene.part]]\nname = \"ball\"\n";
+    text += "held = true\nshape = { kind = \"sphere\", diameter = 20 }\npose = { position = [0, 0, 30] }\n";
+    text += "[scene.effects.position_scale]\nbutton = 1\nscale = 0.5\n[task]\ntype = \"discrimination_pair\"\n";
+    text += "target = \"plate\"\nquestion = \"stiffness\"\ncomparison = { \"contact.stiffness_N_per_m\" = 800 }\n";
+    text += "[scene.contact]\nstiffness_N_per_m = 1000\n[[block]]\nname = \"main\"\norder = \"listed\"\n";
+    const auto pair = readProtocolText(text, "pair.toml", fakeDevices(), kMeasures);
+    ASSERT_FALSE(pair);
+    bool told = false;
+    for (const Error& error : pair.errors())
+        told = told || toString(error).ends_with(
+                           "scene.effects.position_scale.button: 1: must be 3 or above: the first two answer the pair");
+    EXPECT_TRUE(told) << faultOf(pair);
+}
+
 }  // namespace
 }  // namespace passung::protocol

@@ -622,6 +622,35 @@ TEST(Doable, WhatNobodyCouldDoIsNamedWithItsPlace) {
     }
 }
 
+TEST(Doable, NavigationLeadsBeyondTheWorkspaceButForTheStart) {
+    // Truth: closed form: a goal 40 cm off on a device of 4 cm is refused, and reached with a clutch, a drift or a
+    // scale that is larger; a start out of reach stays one.
+    const Folder folder;
+    const Study far{.device = "falcon", .task = place("[0, 400, 30]")};
+    EXPECT_FALSE(told(far, folder).empty());
+    for (const char* effect :
+         {"clutch]\nbutton = 1", "drift]\nshare = 0.1", "position_scale]\nbutton = 1\nscale = 12"}) {
+        Study led = far;
+        led.gate = std::string("\n[scene.effects.") + effect;
+        for (const std::string& line : told(led, folder))
+            EXPECT_EQ(line.find("task.position"), std::string::npos) << line;
+        led.held_pose = "position = [0, 0, 90]";
+        const auto lines = told(led, folder);
+        EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const std::string& line) {
+            return line.find("scene.part.held.pose") != std::string::npos;
+        })) << effect;
+    }
+    Study slower = far;
+    slower.gate = "\n[scene.effects.position_scale]\nbutton = 1\nscale = 0.1";
+    EXPECT_FALSE(told(slower, folder).empty()) << "a smaller scale leads nowhere";
+    Study none = far;
+    none.gate = "\n[scene.effects.clutch]\nbutton = 5";
+    const auto lines = told(none, folder);
+    ASSERT_FALSE(lines.empty());
+    EXPECT_NE(lines.front().find("scene.effects.clutch.button: 5: falcon has 4 buttons"), std::string::npos)
+        << lines[0];
+}
+
 TEST(Doable, WhatIsOnlyOddIsNotRefused) {
     // Truth: closed form: each study is possible by its own numbers, near a limit or in an unusual way.
     const Folder folder;

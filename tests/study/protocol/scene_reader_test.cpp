@@ -226,7 +226,7 @@ TEST(SceneReader, TellsWhatIsWrongWithHands) {
               "s.toml:11:1: error: hand: left: holds no part: one needs held = true and hand = \"left\"");
     EXPECT_NE(errorsOf(handScene("hand = \"left\"", left + left)).find("is used by another hand"), std::string::npos);
     EXPECT_NE(errorsOf(handScene("hand = \"left\"", "[[hand]]\nname = \"left\"\nforce = 2\n"))
-                  .find("hand.left.force: unknown key; known keys: name, device, registration, start_gate"),
+                  .find("hand.left.force: unknown key; known keys: name, device, registration, effects, start_gate"),
               std::string::npos);
 }
 
@@ -268,7 +268,7 @@ TEST(SceneReader, ReadsPartsThatHandsPickUp) {
                        "[[hand]]\nname = \"left\"\nstart_gate = { pose = { position = [4, 5, 6] }, hold_ms = 30 }\n"));
     ASSERT_TRUE(scene) << toString(scene.errors().front());
     EXPECT_EQ(scene->effects.pick.reach, 7e-3);
-    EXPECT_EQ(scene->effects.pick.button, 0);
+    EXPECT_EQ(scene->effects.pick.button, 1);
     EXPECT_FALSE(scene->effects.pick.on_press);
     EXPECT_FALSE(scene->effects.pick.locks);
     EXPECT_FALSE(scene->parts[0].pickable);
@@ -279,10 +279,10 @@ TEST(SceneReader, ReadsPartsThatHandsPickUp) {
     EXPECT_EQ(scene->hand(0).start_gate.X_WH.p, Vec3(1e-3, 2e-3, 3e-3));
     EXPECT_EQ(scene->hand(1).start_gate.X_WH.p, Vec3(4e-3, 5e-3, 6e-3));
     const auto other = read(pickScene("pickable = true\nheld = true",
-                                      "[effects.pick]\nreach_mm = 7\nbutton = 23\nclosed = \"on_press\"\nlet_go = "
+                                      "[effects.pick]\nreach_mm = 7\nbutton = 24\nclosed = \"on_press\"\nlet_go = "
                                       "\"lock\"\n"));
     ASSERT_TRUE(other) << toString(other.errors().front());
-    EXPECT_EQ(other->effects.pick.button, 23);
+    EXPECT_EQ(other->effects.pick.button, 24);
     EXPECT_TRUE(other->effects.pick.on_press);
     EXPECT_TRUE(other->effects.pick.locks);
     EXPECT_EQ(other->heldBy(0), 1u);
@@ -296,8 +296,8 @@ TEST(SceneReader, TellsWhatIsWrongWithPickingUp) {
               "s.toml:9:1: error: effects.pick: {...}: needs a part with pickable = true");
     EXPECT_EQ(errorsOf(pickScene("pickable = true", "[effects.pick]\n")),
               "s.toml:9:1: error: effects.pick.reach_mm: required");
-    EXPECT_EQ(errorsOf(pickScene("pickable = true", "[effects.pick]\nreach_mm = 7\nbutton = 24\n")),
-              "s.toml:11:10: error: effects.pick.button: 24: must be from 0 to 23");
+    EXPECT_EQ(errorsOf(pickScene("pickable = true", "[effects.pick]\nreach_mm = 7\nbutton = 25\n")),
+              "s.toml:11:10: error: effects.pick.button: 25: must be from 1 to 24");
     EXPECT_EQ(errorsOf(pickScene("pickable = true", "[effects.pick]\nreach_mm = 7\n[start_gate]\nhold_ms = 50\n")),
               "s.toml:12:11: error: start_gate.hold_ms: 50: needs `pose`: the hand begins with nothing");
     EXPECT_EQ(
@@ -501,6 +501,87 @@ TEST(SceneReader, BuildsTransientsOnlyIfTheyAreNamedAndComplete) {
     EXPECT_EQ(errorsOf(table), "s.toml:11:1: error: effects.transients.amplitude_Ns_per_m: required");
     EXPECT_EQ(errorsOf(table + "amplitude_Ns_per_m = 0\n"),
               "s.toml:14:22: error: effects.transients.amplitude_Ns_per_m: 0: must be > 0");
+}
+
+TEST(SceneReader, ReadsNavigationOnlyIfItIsNamed) {
+    // Truth: closed form: as written, 40 mm are 0.04 m; the radius is the device's workspace where nothing says it.
+    EXPECT_FALSE(read(kParts)->effects.navigation.any());
+    const std::string all = kParts +
+                            "[effects.clutch]\nbutton = 2\n"
+                            "[effects.position_scale]\nbutton = 3\nscale = 0.2\n"
+                            "[effects.drift]\nshare = 0.1\n";
+    const auto scene = read(all);
+    ASSERT_TRUE(scene) << errorsOf(all);
+    const scene::Navigation& navigation = scene->effects.navigation;
+    EXPECT_EQ(navigation.clutch.button, 2);
+    EXPECT_TRUE(navigation.clutch.orientation);
+    EXPECT_EQ(navigation.second_scale.button, 3);
+    EXPECT_EQ(navigation.second_scale.scale, 0.2);
+    EXPECT_EQ(navigation.drift.share, 0.1);
+    EXPECT_EQ(navigation.drift.radius, 0.1);
+    const auto devices = fakeDevices();
+    EXPECT_EQ(read(all + "[device]\npreset = \"" + devices[0].name + "\"\n")->effects.navigation.drift.radius,
+              devices[0].workspace_radius_m);
+    EXPECT_DOUBLE_EQ(read(all + "radius_mm = 40\n")->effects.navigation.drift.radius, 0.04);
+    EXPECT_FALSE(
+        read(kParts + "[effects.clutch]\nbutton = 1\norientation = false\n")->effects.navigation.clutch.orientation);
+    EXPECT_FALSE(read(kParts + "[effects.drift]\nshare = 0\n")->effects.navigation.any()) << "share 0 is none";
+}
+
+TEST(SceneReader, TellsWhatIsWrongWithNavigation) {
+    // Truth: definition of the keys: place, value, requirement.
+    EXPECT_EQ(errorsOf(kParts + "[effects.clutch]\n"), "s.toml:11:1: error: effects.clutch.button: required");
+    EXPECT_EQ(errorsOf(kParts + "[effects.clutch]\nbutton = 25\n"),
+              "s.toml:12:10: error: effects.clutch.button: 25: must be from 1 to 24");
+    EXPECT_EQ(errorsOf(kParts + "[effects.clutch]\nbutton = 1\ntorque = true\n"),
+              "s.toml:13:1: error: effects.clutch.torque: unknown key; known keys: button, orientation");
+    EXPECT_EQ(errorsOf(kParts + "[effects.position_scale]\nbutton = 1\nscale = 0\n"),
+              "s.toml:13:9: error: effects.position_scale.scale: 0: must be from 0.001 to 1000");
+    EXPECT_EQ(errorsOf(kParts + "[effects.drift]\nshare = 0.6\n"),
+              "s.toml:12:9: error: effects.drift.share: 0.6: must be from 0 to 0.5");
+    EXPECT_EQ(errorsOf(kParts + "[effects.clutch]\nbutton = 2\n[effects.position_scale]\nbutton = 2\nscale = 1\n"),
+              "s.toml:14:10: error: effects.position_scale.button: 2: is the clutch's");
+    auto devices = fakeDevices();
+    devices[0].buttons = 2;
+    const std::string three = kParts + "[effects.clutch]\nbutton = 3\n[device]\npreset = \"" + devices[0].name + "\"\n";
+    const auto refused = readSceneText(three, "s.toml", devices);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(toString(refused.errors().front()),
+              "s.toml:12:10: error: effects.clutch.button: 3: " + devices[0].name + " has 2 buttons");
+}
+
+TEST(SceneReader, HasNavigationOfEachHand) {
+    // Truth: definition: [effects] is that of all hands, a hand's own table stands in its place.
+    const std::string two = kParts +
+                            "[[part]]\nname = \"other\"\nheld = true\nhand = \"left\"\n"
+                            "shape = { kind = \"sphere\", diameter = 10 }\npose = { position = [100, 0, 0] }\n"
+                            "[effects.clutch]\nbutton = 2\n[[hand]]\nname = \"left\"\n";
+    const auto same = read(two), own = read(two + "[hand.effects.drift]\nshare = 0.2\n");
+    ASSERT_TRUE(same) << errorsOf(two);
+    ASSERT_TRUE(own);
+    EXPECT_EQ(same->other_hands[0].navigation.clutch.button, 2);
+    EXPECT_EQ(own->other_hands[0].navigation.clutch.button, 0);
+    EXPECT_EQ(own->other_hands[0].navigation.drift.share, 0.2);
+    EXPECT_EQ(own->effects.navigation.clutch.button, 2);
+}
+
+TEST(SceneReader, HoldsTheStableMaximumAtTheLargestScale) {
+    // Truth: closed form: the handle feels K s d + B s v at the scale s that is on: "max" is the device's over the
+    // largest of them, and the damping likewise; a smaller second scale changes nothing.
+    const auto devices = fakeDevices();
+    const DeviceDescription& device = devices[0];
+    const auto with = [&](const std::string& scale) {
+        return read(kParts + "[device]\npreset = \"" + device.name + "\"\n[registration]\nscale = 2\n" +
+                    (scale.empty() ? "" : "[effects.position_scale]\nbutton = 1\nscale = " + scale + "\n"));
+    };
+    EXPECT_DOUBLE_EQ(with("")->contact.stiffness, device.stable_stiffness_N_per_m / 2.0);
+    EXPECT_EQ(with("0.1")->contact.stiffness, with("")->contact.stiffness);
+    EXPECT_DOUBLE_EQ(with("8")->contact.stiffness, device.stable_stiffness_N_per_m / 8.0);
+    EXPECT_DOUBLE_EQ(with("8")->contact.damping, device.recommended_damping_Ns_per_m / 8.0);
+    const std::string stiff = kParts + "[device]\npreset = \"" + device.name +
+                              "\"\n[effects.position_scale]\nbutton = 1\nscale = 8\n[contact]\nstiffness_N_per_m = " +
+                              std::to_string(device.stable_stiffness_N_per_m / 2.0) + "\n";
+    EXPECT_NE(errorsOf(stiff).find(" per effects.position_scale of 8: "), std::string::npos) << errorsOf(stiff);
 }
 
 TEST(SceneReader, ReadsTheWeightOfTheHeldPartOnlyIfItIsNamed) {

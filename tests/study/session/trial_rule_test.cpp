@@ -140,6 +140,13 @@ TEST(TrialRule, APlacementIsJudgedWhenItIsConfirmed) {
         EXPECT_EQ(placed.events.back(), away < 0.005f ? "success@120" : "failure@120");
         EXPECT_EQ(placed.context.outcome, away < 0.005f ? measures::Outcome::Success : measures::Outcome::Failure);
     }
+    // A button of the scene's effects confirms nothing.
+    std::get<plan::FreePlacementTask>(task.form).other_buttons = 2u;
+    const auto clutched = follow(task, 200, [](std::int64_t tick, TickRecord& record) {
+        record.status |= kEngaged;
+        record.input_flags |= tick >= 140 ? 3u << 8 : tick >= 120 ? 2u << 8 : 0u;
+    });
+    EXPECT_EQ(clutched.events.back(), "success@140");
     const auto waiting = follow(task, 40'000, [](std::int64_t, TickRecord& record) { record.status |= kEngaged; });
     EXPECT_EQ(waiting.events.back(), "timeout@30000");
 }

@@ -46,7 +46,7 @@ inline plan::StudyPlan makePlan(int participants = 4) {
     return plan;
 }
 
-/// `count` consecutive ticks; every field set, the durations too.
+/// `count` consecutive ticks; every field set, the durations too; of a scene without navigation.
 inline std::vector<TickRecord> makeRecords(std::uint64_t seed, std::size_t count, std::int64_t first_tick = 0) {
     Random random(seed);
     const auto fill = [&random](auto& values) {
@@ -82,6 +82,18 @@ inline std::vector<TickRecord> makeRecords(std::uint64_t seed, std::size_t count
     return records;
 }
 
+/// The same of a scene with navigation.
+inline std::vector<TickRecord> withNavigation(std::uint64_t seed, std::vector<TickRecord> records) {
+    Random random(seed);
+    for (TickRecord& r : records) {
+        r.navigation_clutched = static_cast<std::uint32_t>(random.below(2));
+        r.navigation_scale = static_cast<float>(random.uniform());
+        for (float& value : r.navigation_offset_m) value = static_cast<float>(random.normal());
+        for (float& value : r.navigation_quaternion) value = static_cast<float>(random.normal());
+    }
+    return records;
+}
+
 /// Equal in every bit that is stored, so that NaN and -0 count too.
 inline bool sameStoredBits(const TickRecord& a, const TickRecord& b) {
     const auto same = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
@@ -92,7 +104,10 @@ inline bool sameStoredBits(const TickRecord& a, const TickRecord& b) {
            same(a.force_N, b.force_N) && same(a.torque_Nm, b.torque_Nm) && same(a.hand_depth_m, b.hand_depth_m) &&
            same(a.proxy_depth_m, b.proxy_depth_m) && same(a.quality, b.quality) && a.status == b.status &&
            a.contacts == b.contacts && a.iterations == b.iterations && a.nodes_visited == b.nodes_visited &&
-           same(a.energy_J, b.energy_J) && same(a.hand_energy_J, b.hand_energy_J) && same(a.proxy_gap_m, b.proxy_gap_m);
+           same(a.energy_J, b.energy_J) && same(a.hand_energy_J, b.hand_energy_J) &&
+           same(a.proxy_gap_m, b.proxy_gap_m) && a.navigation_clutched == b.navigation_clutched &&
+           same(a.navigation_scale, b.navigation_scale) && same(a.navigation_offset_m, b.navigation_offset_m) &&
+           same(a.navigation_quaternion, b.navigation_quaternion);
 }
 
 inline bool sameStoredBits(const std::vector<TickRecord>& a, const std::vector<TickRecord>& b) {

@@ -102,6 +102,35 @@ TEST_F(Simulate, WritesARowForEveryMillisecondOfThePath) {
     }
 }
 
+TEST_F(Simulate, PressesButtonsOfThePathAndTellsOfNavigation) {
+    // Truth: closed form: a hand in the air goes on by 0.2 mm a tick with the clutch held from 0.1 s to 0.2 s: the part
+    // stays meanwhile, and lies behind the path by that way afterwards; the registration's scale of 2 makes the half of
+    // it, a second scale of 1, from 0.3 s on. Columns of navigation follow the others, and only where the scene has it.
+    writeText(folder_ / "scene.toml", pressScene("penalty") +
+                                          "[registration]\nscale = 2\n[effects.clutch]\nbutton = 2\n"
+                                          "[effects.position_scale]\nbutton = 3\nscale = 1\n");
+    writeText(folder_ / "path.csv",
+              "t_s,x_m,y_m,z_m,qw,qx,qy,qz,buttons\n0,0,0,0.1,1,0,0,0,0\n0.1,0.02,0,0.1,1,0,0,0,2\n"
+              "0.2,0.04,0,0.1,1,0,0,0,0\n0.3,0.06,0,0.1,1,0,0,0,4\n0.4,0.08,0,0.1,1,0,0,0,4\n");
+    const Ended ended =
+        runProgram(folder_.path(), {"simulate", "scene.toml", "--trajectory", "path.csv", "--out", "t.csv"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    const fake::CsvFile t = fake::readCsv(readText(folder_ / "t.csv"));
+    auto columns = kColumns;
+    for (const char* name : {"clutched", "scale", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"})
+        columns.push_back(std::string("navigation_") + name);
+    EXPECT_EQ(t.header, columns);
+    for (std::size_t i = 0; i <= 400; ++i) {
+        const double path = 2e-4 * static_cast<double>(i), held = std::clamp(path, 0.02, 0.04) - 0.02;
+        const double slow = 0.5 * std::max(0.0, path - 0.0598);
+        EXPECT_NEAR(number(t, i, "device_x_m"), path - held - slow, 1e-12) << i;
+        EXPECT_EQ(t.at(i, "navigation_clutched"), i >= 100 && i < 200 ? "1" : "0") << i;
+        EXPECT_EQ(number(t, i, "navigation_scale"), i >= 300 ? 0.5 : 1.0) << i;
+        EXPECT_EQ(t.at(i, "navigation_qw"), "1");
+    }
+    EXPECT_NEAR(number(t, 299, "navigation_x_m"), -0.02, 1e-12);
+}
+
 TEST_F(Simulate, PenaltyForceOnAPlaneIsStiffnessTimesDepth) {
     // Truth: closed form (|F| = K d, upwards; the block's sides are sampled at random places, so that what their points
     // press to the left and to the right cancels to 1 % only)

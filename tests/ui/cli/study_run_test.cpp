@@ -326,6 +326,72 @@ TEST_F(Replay, NamesTickAndColumnOfAnOutputThatWasChanged) {
     EXPECT_NE(all.out.find("\n6 attempts replayed, 1 differ\n"), std::string::npos) << all.out;
 }
 
+TEST(Navigation, IsRecordedExportedAndReplayedWhereAConditionHasIt) {
+    // Truth: invariant. Drift in one of two conditions: a stream of its own with chunks of that one's attempts, a pose
+    // that is the registration's and the recorded offset; every bit is replayed, and a changed one found. The same
+    // study without it has none of this in file or codebook.
+    const TempFolder folder;
+    std::string text = smallStudy();
+    const std::string fair = "\"contact.method\" = \"god_object_heuristic\"";
+    writeText(folder / "without.toml", text);
+    writeText(folder / "with.toml",
+              text.replace(text.find(fair), fair.size(), fair + ", \"effects.drift.share\" = 0.2"));
+    for (const std::string name : {"without", "with"}) {
+        const std::string db = name + ".db";
+        ASSERT_EQ(runProgram(folder.path(), {"run", name + ".toml", "--db", db}).exit_code, 0);
+        ASSERT_EQ(runProgram(folder.path(), {"export", db, "--out", name}).exit_code, 0);
+        EXPECT_EQ(runProgram(folder.path(), {"verify", db}).exit_code, 0);
+        EXPECT_EQ(runProgram(folder.path(), {"replay", db}).exit_code, 0);
+        EXPECT_EQ(readText(folder / name + "/codebook.csv").find("navigation_") != std::string::npos, name == "with");
+    }
+    const auto require = [](auto result) {
+        EXPECT_TRUE(result);
+        return *std::move(result);
+    };
+    const store::StoreReader reader = require(store::StoreReader::open(folder / "with.db"));
+    int navigated = 0;
+    for (const store::AttemptRow& attempt : require(reader.attempts())) {
+        const auto records = require(reader.records(attempt.attempt_id));
+        const bool drifts = attempt.condition == "fair";
+        EXPECT_EQ(store::haveNavigation(records), drifts) << attempt.condition;
+        if (!drifts) continue;
+        ++navigated;
+        double moved = 0.0;
+        for (const TickRecord& record : records) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                const double x = record.device_position_m[i] + static_cast<double>(record.navigation_offset_m[i]);
+                EXPECT_NEAR(static_cast<double>(record.hand_position_m[i]), x, 1e-8) << record.tick;
+            }
+            moved = std::max(moved, std::abs(static_cast<double>(record.navigation_offset_m[2])));
+        }
+        EXPECT_GT(moved, 1e-5);
+    }
+    EXPECT_GT(navigated, 0);
+    {
+        const store::Database database(folder / "with.db", store::OpenMode::ReadWrite);
+        auto found = database.prepare(
+            "SELECT c.rowid, c.first_tick, c.n, c.data, c.crc32 FROM sample_chunk c JOIN stream USING(stream_id) WHERE "
+            "stream='navigation' ORDER BY c.rowid");
+        ASSERT_TRUE(found.step());
+        const std::int64_t row = found.integer(0);
+        const store::Chunk stored{found.integer(1),
+                                  found.integer(2),
+                                  static_cast<std::uint32_t>(found.integer(4)),
+                                  {found.blob(3).begin(), found.blob(3).end()}};
+        store::Chunk changed = require(store::unpackNavigation(stored, store::encodingText()));
+        changed.data[static_cast<std::size_t>(4 * changed.count + 4 * 300)] ^= std::byte{1};  // the scale of tick 300
+        const store::Chunk packed = store::packNavigation(changed);
+        found.reset();
+        database.prepare("UPDATE sample_chunk SET data=?, crc32=? WHERE rowid=?")
+            .bind(std::span<const std::byte>(packed.data), packed.crc32, row)
+            .run();
+    }
+    const Ended differs = runProgram(folder.path(), {"replay", "with.db"});
+    EXPECT_EQ(differs.exit_code, 1);
+    EXPECT_NE(differs.out.find("DIFFERS at tick 300 in navigation_scale"), std::string::npos) << differs.out;
+    EXPECT_EQ(runProgram(folder.path(), {"verify", "with.db"}).exit_code, 1) << "the hash of the chunk has changed";
+}
+
 TEST_F(Replay, FindsTheLastBitOfAChangedInput) {
     // Truth: invariant (the state hash covers exact outputs, also where recorded outputs are rounded)
     falsify("device_z_m", 301, true);

@@ -2175,6 +2175,30 @@
         <translation>effects.weight ist gesetzt: Kein Proxy hängt an der Hand, die das Teil selbst hält</translation>
     </message>
     <message>
+        <source>navigation</source>
+        <translation>Navigation</translation>
+    </message>
+    <message>
+        <source>effects.clutch, effects.position_scale or effects.drift is set: the hand&apos;s place in the scene follows them</source>
+        <translation>effects.clutch, effects.position_scale oder effects.drift ist gesetzt: Der Ort der Hand in der Szene folgt ihnen</translation>
+    </message>
+    <message>
+        <source>sign of contact</source>
+        <translation>Kontaktzeichen</translation>
+    </message>
+    <message>
+        <source>effects.position_scale or effects.drift is set: both wait while parts touch</source>
+        <translation>effects.position_scale oder effects.drift ist gesetzt: Beide warten, solange sich Teile berühren</translation>
+    </message>
+    <message>
+        <source>clutched wrench</source>
+        <translation>Kraft bei gehaltener Kupplung</translation>
+    </message>
+    <message>
+        <source>effects.clutch is set: the wrench fades while the clutch is held</source>
+        <translation>effects.clutch ist gesetzt: Die Kraft klingt ab, solange die Kupplung gehalten wird</translation>
+    </message>
+    <message>
         <source>weight in the hand</source>
         <translation>Gewicht in der Hand</translation>
     </message>

@@ -56,6 +56,23 @@ TEST(SampleCodec, ReadsTimesFromBeforeTheProcessorsWasMeasured) {
     }
 }
 
+TEST(SampleCodec, KeepsNavigationOutOfTheTicksAndInItsOwnStream) {
+    // Truth: invariant: decoding inverts encoding, by tick; ticks of scenes without navigation have none to keep.
+    const auto without = fake::makeRecords(1, 50), records = fake::withNavigation(2, without);
+    EXPECT_FALSE(haveNavigation(without));
+    EXPECT_TRUE(haveNavigation(records));
+    std::vector<TickRecord> back;
+    ASSERT_TRUE(decodeTicks(encodeTicks(records), back));
+    EXPECT_TRUE(fake::sameStoredBits(without, back));
+    const auto unpacked = unpackNavigation(packNavigation(encodeNavigation(records)), encodingText());
+    ASSERT_TRUE(unpacked);
+    ASSERT_TRUE(decodeNavigation(*unpacked, back));
+    EXPECT_TRUE(fake::sameStoredBits(records, back));
+    EXPECT_TRUE(isNavigationStream(navigationStreamName(0)) && isNavigationStream(navigationStreamName(3)));
+    EXPECT_EQ(navigationStreamName(1), "navigation_hand_2");
+    EXPECT_FALSE(isNavigationStream("tick_timing") || isTickStream(navigationStreamName(1)));
+}
+
 TEST(SampleCodec, FindsEveryFlippedBit) {
     // Truth: invariant (a CRC-32 finds every single-bit error)
     const Chunk sound = encodeTicks(fake::makeRecords(2, 3));
