@@ -51,8 +51,10 @@ void followOnSurface(const HandModel& model, const HandSample& hand, const HeldT
                      const ObstaclePoses& obstacles, Proxy& proxy, SurfaceFollow& follow, Pushes& pushes,
                      Report& report) noexcept {
     const std::size_t still = model.still_surface != nullptr ? 1 : 0;
-    for (std::size_t k = 0; k < model.moving.size(); ++k)
+    for (std::size_t k = 0; k < model.moving.size(); ++k) {
+        follow.surface->beginTick(still + k, obstacles.X_WO_begin[k]);
         follow.surface->moveBody(still + k, obstacles.X_WO[model.moving[k]]);
+    }
     follow.surface->setBudget(static_cast<int>(target.work));
     if (!model.moving.empty()) follow.surface->setHands(hand.X_WH, target.others_way);
     // A spring from the old place would throw the hand across the room.
@@ -65,7 +67,7 @@ void followOnSurface(const HandModel& model, const HandSample& hand, const HeldT
     report.iterations += static_cast<std::uint32_t>(now.looks);
     report.rows_taken = std::max(report.rows_taken, static_cast<std::uint32_t>(now.rows));
     report.nodes_visited += static_cast<std::uint32_t>(now.work);
-    if (now.suspended) report.status |= kSuspended;
+    if (now.suspended || now.waits) report.status |= kSuspended;
     if (now.meets) report.status |= kLedOut;
     if (now.stuck) report.status |= kIterationLimit;
     noteRows(model, *follow.surface, pushes);
