@@ -82,20 +82,31 @@ bool SurfaceProxy::keepsCommonWay(const NearPair& near) noexcept {
         if (near.s_next + n.dot(common.move) + m.dot(near.centre) - m.norm() * near.radius >= common.bent) return true;
     }
     const HullPair pair = hulls(near.pair);
-    tick_.work += workOf(pair, 2);
-    if (separationAlong(pair, common.begin, n) >= common.bent && separationAlong(pair, body.P_next, n) >= common.bent)
-        return true;
-    CornerSeed seed = near.seed;
-    const NearestHulls end = nearestPoints(pair, body.P_next, n, seed);
-    const NearestHulls begin =
-        nearestPoints(pair, common.begin, common.begin.R * (body.P_next.R.transpose() * end.n), seed);
-    int looks = end.looks + begin.looks;
-    const StraightWay way(common.begin, body.P_next);
-    bool apart = !begin.meets && !end.meets && keepsApart(pair, way, begin.n, end.n, looks);
-    if (apart) {
-        const HullPair mirrored{pair.obstacle, pair.held, pair.of_obstacle, pair.of_held};
-        apart = keepsApart(mirrored, way.mirrored(), -(common.begin.R.transpose() * begin.n),
-                           -(body.P_next.R.transpose() * end.n), looks);
+    const Mat3 back = common.begin.R * body.P_next.R.transpose();
+    // The plane of the body, or one that turns with the held part.
+    Vec3 n0 = n, n1 = n;
+    double s0 = separationAlong(pair, common.begin, n0);
+    const double s1 = separationAlong(pair, body.P_next, n1);
+    tick_.work += workOf(pair, 1);
+    if (s0 >= common.bent && s1 >= common.bent) return true;
+    if (const Vec3 carried = back * n; s0 < s1) {
+        const double s = separationAlong(pair, common.begin, carried);
+        if (s > s0) n0 = carried;
+        s0 = std::max(s0, s);
+    }
+    const StraightWay way(common.begin, body.P_next), mirrored_way = way.mirrored();
+    const HullPair mirrored{pair.obstacle, pair.held, pair.of_obstacle, pair.of_held};
+    const auto seenByPart = [](const Placement& X, const Vec3& m) { return Vec3(-(X.R.transpose() * m)); };
+    bool apart = setsApart(pair, way, n0, n1, std::min(s0, s1)) &&
+                 setsApart(mirrored, mirrored_way, seenByPart(way.from, n0), seenByPart(way.to, n1), std::min(s0, s1));
+    int looks = 1;
+    if (!apart) {
+        CornerSeed seed = near.seed;
+        const NearestHulls end = nearestPoints(pair, body.P_next, n1, seed);
+        const NearestHulls begin = nearestPoints(pair, common.begin, back * end.n, seed);
+        looks += end.looks + begin.looks;
+        apart = !begin.meets && !end.meets && keepsApart(pair, way, begin.n, end.n, looks) &&
+                keepsApart(mirrored, mirrored_way, seenByPart(way.from, begin.n), seenByPart(way.to, end.n), looks);
     }
     tick_.work += workOf(pair, looks);
     if (!apart && near.faces) common.crossed = crossedAtBegin(near.body);

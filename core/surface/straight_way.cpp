@@ -15,13 +15,13 @@ Placement inverseOf(const Placement& X) noexcept {
     return inverse;
 }
 
-/// The Bernstein coefficients of what a plane that turns from n0 to n1 sets apart, against `need`.
-bool turningPlaneKeepsApart(const HullPair& pair, const Placement& X0, const Vec3& n0, const Placement& X1,
-                            const Vec3& n1, double need) noexcept {
-    if (separationAlong(pair, X0, n0) < need || separationAlong(pair, X1, n1) < need) return false;
+/// The middle one of the Bernstein coefficients of what a plane sets apart that turns from n0 to n1: the outer ones are
+/// what it does at the ends.
+double middleOf(const HullPair& pair, const Placement& X0, const Vec3& n0, const Placement& X1,
+                const Vec3& n1) noexcept {
     const double held = leastReachOf(pair.held, pair.of_held, X1.R.transpose() * n0 + X0.R.transpose() * n1) +
                         n0.dot(X1.p) + n1.dot(X0.p);
-    return 0.5 * (held + leastReachOf(pair.obstacle, pair.of_obstacle, -(n0 + n1))) >= need;
+    return 0.5 * (held + leastReachOf(pair.obstacle, pair.of_obstacle, -(n0 + n1)));
 }
 
 }  // namespace
@@ -38,9 +38,18 @@ Placement StraightWay::at(double share) const noexcept {
 
 StraightWay StraightWay::mirrored() const noexcept { return {inverseOf(from), inverseOf(to)}; }
 
+double riseOf(const HullPair& pair, const StraightWay& way) noexcept {
+    return (pair.of_held.centre.norm() + pair.of_held.radius) * way.turn.squaredNorm() / 8.0;
+}
+
+bool setsApart(const HullPair& pair, const StraightWay& way, const Vec3& n0, const Vec3& n1, double least) noexcept {
+    const double need = riseOf(pair, way) + kUnsure;
+    return least >= need && middleOf(pair, way.from, n0, way.to, n1) >= need;
+}
+
 bool keepsApart(const HullPair& pair, const StraightWay& way, const Vec3& n_begin, const Vec3& n_end,
                 int& looks) noexcept {
-    const double rise = (pair.of_held.centre.norm() + pair.of_held.radius) * way.turn.squaredNorm() / 8.0;
+    const double rise = riseOf(pair, way);
     Placement X = way.from;
     Vec3 n = n_begin;
     double done = 0.0;
@@ -56,7 +65,8 @@ bool keepsApart(const HullPair& pair, const StraightWay& way, const Vec3& n_begi
             n_next = there.n;
         }
         looks += 2;
-        bool apart = turningPlaneKeepsApart(pair, X, n, next, n_next, need);
+        bool apart = separationAlong(pair, X, n) >= need && separationAlong(pair, next, n_next) >= need &&
+                     middleOf(pair, X, n, next, n_next) >= need;
         if (!apart) {
             CornerSeed seed;
             const NearestHulls swept = nearestHulls(pair, X, next, n, need, need, seed);

@@ -15,10 +15,15 @@ struct StraightWay {
     StraightWay mirrored() const noexcept;
 };
 
-/// True if it is proven that the held hull meets the obstacle's nowhere on the way. Of pieces, the longest that one
-/// plane or one that turns evenly sets apart, none shorter than a sixteenth: in each of them a point goes along the
-/// chord, and beside it by no more than R θ²/8. `n`: a direction to begin with. `looks` grows by those that it took.
-/// rt-safe, bounded.
+/// How far a point of the hull goes beside its chord on the way, at most [m].
+double riseOf(const HullPair& pair, const StraightWay& way) noexcept;
+
+/// True if it is proven that the held hull meets the obstacle's nowhere on the way: by a plane that turns evenly from
+/// `n0` to `n1`, which sets them apart by no less than `least` at both ends. rt-safe.
+bool setsApart(const HullPair& pair, const StraightWay& way, const Vec3& n0, const Vec3& n1, double least) noexcept;
+
+/// The same by pieces, the longest that a plane sets apart, fixed or turning, none shorter than a sixteenth; at the
+/// ends of the way those are `n_begin` and `n_end`. `looks` grows by those that it took. rt-safe, bounded.
 bool keepsApart(const HullPair& pair, const StraightWay& way, const Vec3& n_begin, const Vec3& n_end,
                 int& looks) noexcept;
 
