@@ -33,6 +33,14 @@ Placement KnownBody::seen(const Placement& X) const noexcept {
     return in;
 }
 
+Placement KnownBody::seenFrom(const Pose& frame, const Placement& X) const noexcept {
+    const Placement to_world_then(frame);
+    Placement in;
+    in.R.noalias() = to_world_then.R.transpose() * X.R;
+    in.p = to_world_then.R.transpose() * (X.p - to_world_then.p);
+    return in;
+}
+
 /// How far the box around the held part is from that of the body at least, at the pose of now.
 double SurfaceProxy::clearanceOf(const KnownBody& body) const noexcept {
     const geometry::Bounds &box = held_->box(), &other = body.tree->box();
@@ -50,9 +58,9 @@ double SurfaceProxy::reach() const noexcept {
 /// Which bodies are in reach. One alone always is.
 void SurfaceProxy::findReach() noexcept {
     if (bodies_.size() == 1) return;
-    const double far = reach();
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         KnownBody& body = bodies_[i];
+        const double far = reach() + strayOf(body);
         if (!body.in_reach && body.clear >= travelled_ + far) continue;
         const double apart = clearanceOf(body);
         if (body.in_reach ? apart > 2.0 * far + kLeaves && phase_ == Phase::Idle : apart >= far) {

@@ -36,13 +36,30 @@ struct KnownBody {
     PerClass nearer{};         // by the look
     PerClass ahead{};          // by what may come of it, and in the next one
 
+    // In another hand: the way that both go at once, from where they were when the tick began (common_way.cpp).
+    struct Common {
+        bool shared = false;
+        bool crossed = false;      // in this tick no way is free
+        Placement begin;           // the held part then, seen from it then
+        PerClass back{};           // nearer, if the part went back there
+        Mat3 turn = Mat3::Zero();  // R_begin - R_next
+        Vec3 move = Vec3::Zero();  // p_begin - p_next
+        double bent = 0.0;         // which a plane has to leave besides [m]
+    } common;
+
     KnownBody(const ClusterTree& held, const SurfaceBody& body) : tree(body.tree), enclosure(held, *body.tree) {
         put(body.X_WB);
     }
     void put(const Pose& X) noexcept;
+    /// What has to be left of pairs asleep that come nearer by `way`, of class c.
+    double due(double way, std::size_t c) const noexcept {
+        return common.shared ? std::max(way, common.back[c]) + common.bent : way;
+    }
     bool sleepsWith(const Vec3& n, double s) const noexcept { return s >= sleeps[NormalClass::of(n)]; }
     /// From the world to its frame.
     Placement seen(const Placement& X) const noexcept;
+    /// The same if that were `frame`.
+    Placement seenFrom(const Pose& frame, const Placement& X) const noexcept;
     Vec3 direction(const Vec3& in_world) const noexcept {
         return is_world ? in_world : Vec3(to_world.R.transpose() * in_world);
     }

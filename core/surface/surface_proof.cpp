@@ -158,11 +158,16 @@ SurfaceProxy::Checked SurfaceProxy::check() noexcept {
             continue;
         }
         if (spent()) return Checked::Spent;
-        if (near_[at_].meets || proves(near_[at_])) {
+        const bool proven = near_[at_].meets || proves(near_[at_]);
+        if (proven && (violated_ || keepsCommonWay(near_[at_]))) {
             ++at_;
             continue;
         }
         if (trySplit(at_)) continue;
+        if (proven) {
+            if (at_ >= front_) std::swap(near_[at_], near_[front_++]);
+            return Checked::Astray;
+        }
         if (overlaps_ && near_[at_].faces) {
             near_[at_++].meets = true;  // a face that is left from its back
             continue;

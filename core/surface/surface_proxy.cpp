@@ -76,6 +76,7 @@ void SurfaceProxy::place(const Pose& X_WG) noexcept {
         ask(body);
         body.in_reach = bodies_.size() == 1;
         body.clear = 0.0;
+        body.common.begin = body.P;
     }
     last_way_ = travelled_ = 0.0;
     hurry_ = 1.0;
@@ -155,6 +156,7 @@ void SurfaceProxy::measureNearer() noexcept {
         body.move = body.P_next.p - body.P.p;
         measureApproach(held_->box(), body.turn, body.move, body.nearer);
         for (double& nearer : body.nearer) nearer = std::min(nearer + arc_, way_);
+        if (body.common.shared) measureCommonWay(body);
         ++measured;
     }
     tick_.work += kApproachWork * std::max(0, measured - 1);
@@ -307,11 +309,12 @@ bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
     }
     if (tick_.looks > 0 && !limited_ && way_ < goodEnough()) return false;
     most_way_ = std::min(room, 1.3 * way_ + 2e-6);
+    lookBack();
     measureNearer();
     wakes_ = 0;
     front_ = at_ = 0;
     front_only_ = false;
-    rounds_ = added_ = ghosts_ = 0;
+    rounds_ = added_ = ghosts_ = shortened_ = 0;
     violated_ = false;
     least_share_ = 1.0;
     phase_ = Phase::Waking;
@@ -324,9 +327,11 @@ double SurfaceProxy::shareKnown() const noexcept {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const KnownBody& body = bodies_[i];
         if (!body.in_reach) continue;
-        for (std::size_t c = 0; c < NormalClass::kCount; ++c)
-            if (const double room = forest_.sureOf(PairForest::listOf(i, c)) - gap_; room < share * body.nearer[c])
-                share = room / body.nearer[c];
+        for (std::size_t c = 0; c < NormalClass::kCount; ++c) {
+            const double room = forest_.sureOf(PairForest::listOf(i, c)) - gap_ - body.common.bent;
+            if (body.common.shared && room < body.common.back[c]) return 0.0;
+            if (room < share * body.nearer[c]) share = room / body.nearer[c];
+        }
     }
     return share;
 }
@@ -347,8 +352,10 @@ bool SurfaceProxy::wakeAll() noexcept {
             const KnownBody& body = bodies_[i];
             if (!body.in_reach) continue;
             for (std::size_t c = 0; c < NormalClass::kCount; ++c)
-                if (const std::size_t list = PairForest::listOf(i, c); forest_.sureOf(list) < body.nearer[c] + gap_)
-                    woken += forest_.wake(list, body.ahead[c] + gap_, kMostWoken - std::min(woken, kMostWoken));
+                if (const std::size_t list = PairForest::listOf(i, c);
+                    forest_.sureOf(list) < body.due(body.nearer[c], c) + gap_)
+                    woken +=
+                        forest_.wake(list, body.due(body.ahead[c], c) + gap_, kMostWoken - std::min(woken, kMostWoken));
         }
         if (!settle()) return false;
         const double share = shareKnown();
@@ -469,8 +476,10 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH, const motion::TwoSpri
         const Checked checked = check();
         if (checked == Checked::Spent) {
             tick_.suspended = true;
+        } else if (checked == Checked::Astray) {
+            if (!shorten()) break;
         } else if (checked == Checked::Violated ||
-                   (ghosts_ < kMostGhosts && 2 * tick_.work < budget_ && dropsGhosts())) {
+                   (ghosts_ < kMostGhosts && !tick_.waits && 2 * tick_.work < budget_ && dropsGhosts())) {
             if (tryAgain(checked == Checked::Violated)) continue;
             if (phase_ == Phase::Idle) {
                 tick_.stuck = true;
@@ -479,7 +488,7 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH, const motion::TwoSpri
             accept();
         } else {
             accept();
-            if (!limited_ && way_ < goodEnough()) break;
+            if (tick_.waits || (!limited_ && way_ < goodEnough())) break;
         }
     }
     if (!tick_.suspended) {
@@ -497,7 +506,7 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH, const motion::TwoSpri
     tell();
     if (tick_.active > 0)
         since_held_ = 0;
-    else if (!tick_.suspended)
+    else if (!tick_.suspended && !tick_.waits)
         since_held_ = std::min(since_held_ + 1, kMostIdle + 1);
     return tick_;
 }

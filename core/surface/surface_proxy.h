@@ -27,6 +27,7 @@ struct SurfaceTick {
     Pose X_WG;
     double gap = 0.0;        // proven: no two triangles are nearer at X_WG [m]; at most SurfaceProxy::kSeen
     bool suspended = false;  // the budget ended: what was begun goes on in the next tick
+    bool waits = false;      // the common way was not free all along: it goes on in the next tick
     bool meets = false;      // the parts overlap, as at a start in overlap: they are being set apart
     bool stuck = false;      // no motion was found within the bounds on rounds
     int looks = 0;
@@ -63,6 +64,13 @@ struct SurfaceTick {
 ///           that are due now. Until then the part stays where it is, however many ticks of work that is;
 ///   rows    features of either frame: only where they are now differs. The look that was begun is given up.
 /// After a motion above kVoid nothing of the body is known, and it is found out from the roots.
+///
+/// Parts in other hands (common_way.cpp). Who looks at two ticks sees both go at once, each straight from where it was.
+/// So all that is proven of a look is proven for the way from where both were when the tick began, too, as either sees
+/// the other: of pairs asleep by what is left of their keys where the part goes back there, of near pairs by planes. A
+/// look of which it is not true is halved, and given up after some times (SurfaceTick::waits). u = 0 always is true:
+/// the other's way was, while this part rested. So only the last place counts, whatever lies between.
+///
 /// No crossing: movers take turns. While one moves all others rest, so that its own proof holds against the frame of
 /// each, for its whole way; then each of the others is told (moveBody), and begins its own way with what is true at
 /// that pose. Two faces are apart at each pose of any way, and each way begins where the one before has ended. A body
@@ -105,6 +113,11 @@ public:
         others_way_ = others_way;
     }
 
+    /// Body `i` is in another hand, and was at X_WB when the tick began, the held part where it is now. From then on
+    /// parts stay apart also on the straight way that both go at once from there. rt-safe.
+    void beginTick(std::size_t i, const Pose& X_WB) noexcept;
+    /// Body `i` is in no other hand any more. rt-safe.
+    void leaveBody(std::size_t i) noexcept { bodies_[i].common.shared = false; }
     /// Body `i` has gone to X_WB while the held part rested; whoever moved it proved that no triangles met on the
     /// way. What has to be found out about it is work of the next tick. rt-safe, bounded.
     void moveBody(std::size_t i, const Pose& X_WB) noexcept;
@@ -160,7 +173,7 @@ private:
         Vec3 n;
     };
     enum class Phase : std::uint8_t { Idle, Waking, Checking };
-    enum class Checked : std::uint8_t { Passed, Violated, Spent };
+    enum class Checked : std::uint8_t { Passed, Violated, Astray, Spent };
 
     // surface_bodies.cpp
     bool knowsItsSide() noexcept;
@@ -174,6 +187,14 @@ private:
     void release(std::size_t at) noexcept;
     void moveNear() noexcept;
     bool catchUp() noexcept;
+
+    // common_way.cpp
+    double strayOf(const KnownBody& body) const noexcept;
+    void lookBack() noexcept;
+    void measureCommonWay(KnownBody& body) const noexcept;
+    bool keepsCommonWay(const NearPair& near) noexcept;
+    bool crossedAtBegin(std::size_t i) noexcept;
+    bool shorten() noexcept;
 
     // surface_proof.cpp
     HullPair hulls(std::uint32_t pair) const noexcept;
@@ -263,7 +284,7 @@ private:
     double most_way_ = 0.0, way_ = 0.0, arc_ = 0.0, ease_ = 0.0, least_share_ = 1.0;
     std::size_t at_ = 0, wakes_ = 0;
     bool front_only_ = false, violated_ = false, limited_ = false;
-    int added_ = 0, rounds_ = 0, ghosts_ = 0;
+    int added_ = 0, rounds_ = 0, ghosts_ = 0, shortened_ = 0;
 
     SurfaceTick tick_;
     std::array<Pose, kMostLooks> chain_;

@@ -17,7 +17,7 @@ namespace passung::tick {
 /// A straight way of turning parts is none for a point between them: what that may take of room, at most kMostBent, is
 /// accepted. Not looked at are ways of which one is shorter than what is accepted: the diagonal is nowhere farther from
 /// the sides.
-/// Not done of surfaces: their ways are proven in turns alone.
+/// Surfaces prove each look for that way, strictly and as either part sees the other (core/surface/common_way.cpp).
 /// Limit case: both go together, the one way like the other → they stay as far apart as they are.
 inline constexpr double kLongestPiece = 5e-4;   // [m]
 inline constexpr int kMostPieces = 16;          // more: it stays

@@ -133,7 +133,10 @@ void placePart(const HandModel& model, const std::vector<Pose>& X_WP, HandState&
         place(hand.solver.near());
         place(hand.near_hand);
     } else if (model.hasSurfaces()) {
-        for (const std::uint32_t i : model.moving) hand.surface->moveBody(surfaceBodyOf(model, i), hand.X_WO[i]);
+        for (const std::uint32_t i : model.moving) {
+            hand.surface->leaveBody(surfaceBodyOf(model, i));
+            hand.surface->moveBody(surfaceBodyOf(model, i), hand.X_WO[i]);
+        }
         hand.surface->place(X);
     } else {
         place(hand.around_proxy.near);

@@ -57,8 +57,14 @@ SurfaceFollow surfaceFollow(const HandModel& model) {
 void followOnSurface(const HandModel& model, const HandSample& hand, const HeldTarget& target,
                      const ObstaclePoses& obstacles, Proxy& proxy, SurfaceFollow& follow, Pushes& pushes,
                      Report& report) noexcept {
-    for (const ObstaclePoses::Carried& in_hand : obstacles.inHands())
-        follow.surface->moveBody(surfaceBodyOf(model, in_hand.obstacle), obstacles.X_WO[in_hand.obstacle]);
+    for (const ObstaclePoses::Carried& in_hand : obstacles.inHands()) {
+        const std::size_t body = surfaceBodyOf(model, in_hand.obstacle);
+        if (in_hand.rests)
+            follow.surface->leaveBody(body);
+        else
+            follow.surface->beginTick(body, in_hand.X_WO_begin);
+        follow.surface->moveBody(body, obstacles.X_WO[in_hand.obstacle]);
+    }
     follow.surface->setBudget(static_cast<int>(target.work));
     if (model.meetsHands()) follow.surface->setHands(hand.X_WH, target.others_way);
     // A spring from the old place would throw the hand across the room.
@@ -71,7 +77,7 @@ void followOnSurface(const HandModel& model, const HandSample& hand, const HeldT
     report.iterations += static_cast<std::uint32_t>(now.looks);
     report.rows_taken = std::max(report.rows_taken, static_cast<std::uint32_t>(now.rows));
     report.nodes_visited += static_cast<std::uint32_t>(now.work);
-    if (now.suspended) report.status |= kSuspended;
+    if (now.suspended || now.waits) report.status |= kSuspended;
     if (now.meets) report.status |= kLedOut;
     if (now.stuck) report.status |= kIterationLimit;
     noteRows(model, target, *follow.surface, pushes);

@@ -1,5 +1,6 @@
 // Truth, unless a test says otherwise: triangle against triangle (mesh_crossing.h), at every tick and at nine poses
-// between any two that were accepted, in the frame of the part that rests meanwhile.
+// between any two that were accepted, in the frame of the part that rests meanwhile; and at nine poses of the straight
+// way that two parts go at once from one tick to the next, as either sees the other.
 
 #include <gtest/gtest.h>
 
@@ -133,7 +134,7 @@ struct Moved {
 };
 
 struct Seen {
-    int ticks = 0, crossings = 0, between = 0, too_high = 0, gaps = 0;
+    int ticks = 0, crossings = 0, between = 0, at_once = 0, waits = 0, too_high = 0, gaps = 0;
     int held = 0, of_other = 0;  // ticks under a row, and under one of a part that is moved by another hand
     int suspended = 0, longest = 0, stuck = 0, meets = 0;
     int most_work = 0;
@@ -165,9 +166,20 @@ public:
         }
     }
 
+    /// From now on they are kept apart also on the straight ways that they go at once.
+    InTurns& atOnce() {
+        at_once_ = true;
+        return *this;
+    }
+
     Seen run(int ticks, int full_every) {
         for (int tick = 0; tick < ticks; ++tick) {
             ++seen_.ticks;
+            std::vector<Pose> begin;
+            for (const auto& proxy : proxies_) begin.push_back(proxy->pose());
+            for (std::size_t i = 0; i < parts_.size(); ++i)
+                for (std::size_t k = 0; k < parts_.size(); ++k)
+                    if (at_once_ && k != i) proxies_[i]->beginTick(k, begin[k]);
             for (std::size_t turn = 0; turn < parts_.size(); ++turn) {
                 const std::size_t now_at = static_cast<std::size_t>(tick), i = (turn + now_at) % parts_.size();
                 if (tick + 1 < ticks && (now_at + 3 * i) % 11 == 0) continue;
@@ -182,6 +194,7 @@ public:
                 seen_.longest = std::max(seen_.longest, run_[i]);
                 if (tick == ticks - 1) seen_.lag = std::max(seen_.lag, (proxy.pose().p - X_WH.p).norm());
             }
+            if (at_once_) judgeAtOnce(begin);
         }
         return seen_;
     }
@@ -197,6 +210,22 @@ private:
                 limit = std::min(limit, between_[pair].distance(a == i ? X_ba : X_ba.inverse(), limit));
             }
         return std::min(limit, around_[i].distance(X, limit));
+    }
+
+    void judgeAtOnce(const std::vector<Pose>& begin) {
+        const auto seen = [&](std::size_t a, std::size_t b) {
+            return std::pair{begin[b].inverse() * begin[a], proxies_[b]->pose().inverse() * proxies_[a]->pose()};
+        };
+        std::size_t pair = 0;
+        for (std::size_t a = 0; a < parts_.size(); ++a)
+            for (std::size_t b = a + 1; b < parts_.size(); ++b, ++pair)
+                for (int k = 1; k < 10; ++k) {
+                    const auto at = [t = 0.1 * k](const std::pair<Pose, Pose>& way) {
+                        return Pose{way.first.q.slerp(t, way.second.q), way.first.p + t * (way.second.p - way.first.p)};
+                    };
+                    seen_.at_once += between_[pair].distance(at(seen(a, b)), 1e-9) == 0.0;
+                    seen_.at_once += between_[pair].distance(at(seen(b, a)).inverse(), 1e-9) == 0.0;
+                }
     }
 
     void judge(std::size_t i, const Pose& before, const SurfaceTick& now, bool full) {
@@ -222,6 +251,7 @@ private:
         seen_.of_other += now.active > 0 && of_other;
         seen_.suspended += now.suspended;
         seen_.stuck += now.stuck;
+        seen_.waits += now.waits;
         seen_.meets += now.meets;
         seen_.most_work = std::max(seen_.most_work, now.work);
     }
@@ -230,6 +260,7 @@ private:
     std::vector<ClusterTree> trees_;
     ClusterTree still_;
     int budget_;
+    bool at_once_ = false;
     Random random_{77};
     std::vector<test::MeshPairTruth> between_, around_;
     std::vector<std::optional<SurfaceProxy>> proxies_;
@@ -239,12 +270,13 @@ private:
 
 void expectSafe(const char* name, std::uint64_t seed, const Seen& seen) {
     std::printf(
-        "%s %d: under a row %d, of another part %d; suspended %d (longest %d) stuck %d; work at most %d; "
+        "%s %d: under a row %d, of another part %d; suspended %d (longest %d) waits %d stuck %d; work at most %d; "
         "least distance %.2g m\n",
-        name, static_cast<int>(seed), seen.held, seen.of_other, seen.suspended, seen.longest, seen.stuck,
+        name, static_cast<int>(seed), seen.held, seen.of_other, seen.suspended, seen.longest, seen.waits, seen.stuck,
         seen.most_work, seen.least);
     EXPECT_EQ(seen.crossings, 0) << seed;
     EXPECT_EQ(seen.between, 0) << seed;
+    EXPECT_EQ(seen.at_once, 0) << seed;
     EXPECT_EQ(seen.too_high, 0) << "gaps told, above the exact ones of " << seen.gaps;
     EXPECT_EQ(seen.meets, 0) << seed;
 }
@@ -276,6 +308,17 @@ TEST_P(MovedInTurns, PartsInTwoHandsNeverMeet) {
         expectSafe(GetParam().name, seed, seen);
         EXPECT_GT(seen.of_other, 50) << "the hands press the parts against each other";
         EXPECT_LE(seen.suspended, kMostSuspended[seed % kSpeeds.size()]) << seed;
+        EXPECT_LT(seen.lag, 1e-5) << "the hands have gone apart";
+    }
+}
+
+TEST_P(MovedInTurns, NeitherDoTheyOnTheWayThatBothGoAtOnce) {
+    constexpr std::array kMost{10, 10, 100, 60};  // suspended, as above: what is proven besides is work too
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        const Seen seen = scene(GetParam(), seed, .5, 38000).atOnce().run(500, 10);
+        expectSafe(GetParam().name, seed, seen);
+        EXPECT_GT(seen.of_other, 50) << "the hands press the parts against each other";
+        EXPECT_LE(seen.suspended, kMost[seed % kSpeeds.size()]) << seed;
         EXPECT_LT(seen.lag, 1e-5) << "the hands have gone apart";
     }
 }
@@ -323,6 +366,18 @@ TEST(MovingBodies, AnyBudgetKeepsThemApart) {
         }
         EXPECT_GT(suspended, 0);
     }
+}
+
+TEST(MovingBodies, OnWaysThatAllGoAtOnceWaitForNobodyForLong) {
+    // Truth: as above, and invariant: whatever the budget and the turns, a part comes to where its hand is when the
+    // hands have gone apart.
+    for (const int budget : {1000, 38000, kAnyBudget})
+        for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+            const Seen seen = scene({"torus on angle", torus, angle}, seed, .3, budget).atOnce().run(300, 10);
+            expectSafe("at once", seed, seen);
+            EXPECT_GT(seen.of_other, 20);
+            EXPECT_LT(seen.lag, 1e-5);
+        }
 }
 
 TEST(MovingBodies, SeeTheSameFromEveryFrame) {
