@@ -117,7 +117,7 @@ public:
     /// parts stay apart also on the straight way that both go at once from there. rt-safe.
     void beginTick(std::size_t i, const Pose& X_WB) noexcept;
     /// Body `i` is in no other hand any more. rt-safe.
-    void leaveBody(std::size_t i) noexcept { bodies_[i].common.shared = false; }
+    void leaveBody(std::size_t i) noexcept { bodies_[i].common = {}; }
     /// Body `i` has gone to X_WB while the held part rested; whoever moved it proved that no triangles met on the
     /// way. What has to be found out about it is work of the next tick. rt-safe, bounded.
     void moveBody(std::size_t i, const Pose& X_WB) noexcept;

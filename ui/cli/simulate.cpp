@@ -32,13 +32,16 @@ constexpr const char* kHeader =
 constexpr const char* kNavigationHeader =
     ",navigation_clutched,navigation_scale,navigation_x_m,navigation_y_m,navigation_z_m,navigation_qw,navigation_qx,"
     "navigation_qy,navigation_qz";
+/// Of a scene whose parts are picked up.
+constexpr const char* kHeldHeader = ",held_part";
 
 /// How long a tick took [µs].
 struct TickTime {
     double wall, processor;
 };
 
-void writeRow(fmt::memory_buffer& text, std::int64_t tick, const tick::TickOutput& output, const TickTime& us) {
+void writeRow(fmt::memory_buffer& text, std::int64_t tick, const scene::SceneSpec& spec, const tick::TickOutput& output,
+              const TickTime& us) {
     auto out = std::back_inserter(text);
     const tick::TickFrame& f = output.frame;
     fmt::format_to(out, "{},{}", tick, static_cast<double>(tick) / 1000.0);
@@ -55,6 +58,9 @@ void writeRow(fmt::memory_buffer& text, std::int64_t tick, const tick::TickOutpu
     if (!std::isnan(f.scale))
         fmt::format_to(out, ",{},{},{},{},{},{},{},{},{}", f.clutched ? 1 : 0, f.scale, f.offset.x(), f.offset.y(),
                        f.offset.z(), f.turn.w(), f.turn.x(), f.turn.y(), f.turn.z());
+    if (spec.effects.picks())
+        fmt::format_to(out, ",{}",
+                       output.held == kNoPart ? "NA" : spec.parts[static_cast<std::size_t>(output.held)].name);
     fmt::format_to(out, "\n");
 }
 
@@ -138,6 +144,7 @@ int simulate(const SimulateArguments& options) {
         OutputFile& out = outs.emplace_back(options.outs[hand]);
         out.write(kHeader);
         if (spec->hand(hand).navigation.any()) out.write(kNavigationHeader);
+        if (spec->effects.picks()) out.write(kHeldHeader);
         out.write("\n");
     }
     std::vector<DeviceReading> readings(hands);
@@ -156,7 +163,7 @@ int simulate(const SimulateArguments& options) {
         const std::int64_t processor = threadProcessorNanoseconds() - processor_begin;
         for (std::size_t hand = 0; hand < hands; ++hand) {
             text.clear();
-            writeRow(text, i, outputs[hand], {took.count(), 1e-3 * static_cast<double>(processor)});
+            writeRow(text, i, *spec, outputs[hand], {took.count(), 1e-3 * static_cast<double>(processor)});
             outs[hand].write({text.data(), text.size()});
         }
         if (i % 10000 == 0) progress.show(fmt::format("{} of {} ticks", i, last + 1));

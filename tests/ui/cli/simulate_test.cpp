@@ -131,6 +131,40 @@ TEST_F(Simulate, PressesButtonsOfThePathAndTellsOfNavigation) {
     EXPECT_NEAR(number(t, 299, "navigation_x_m"), -0.02, 1e-12);
 }
 
+TEST_F(Simulate, PicksPartsUpByTheButtonsOfThePath) {
+    // Truth: closed form. Closed on at t = 0.1 s, the block goes with the hand from the next tick on; let go at 0.3 s,
+    // it stays. A second hand takes it where it is then.
+    const std::string scene =
+        "[[part]]\nname = \"table\"\nshape = { kind = \"box\", width = 100, depth = 100, height = 10 }\n"
+        "[[part]]\nname = \"block\"\npickable = true\npose = { position = [0, 0, 11] }\n"
+        "shape = { kind = \"box\", width = 10, depth = 10, height = 10 }\n"
+        "[contact]\nmethod = \"god_object\"\n[effects.pick]\nreach_mm = 3\n[[hand]]\nname = \"left\"\n";
+    writeText(folder_ / "scene.toml", scene);
+    writeText(folder_ / "right.csv",
+              "t_s,x_m,y_m,z_m,qw,qx,qy,qz,buttons\n0,0,0,0.018,1,0,0,0,0\n0.1,0,0,0.018,1,0,0,0,1\n"
+              "0.3,0.02,0,0.038,1,0,0,0,0\n0.5,0.1,0,0.1,1,0,0,0,0\n");
+    writeText(folder_ / "left.csv",
+              "t_s,x_m,y_m,z_m,qw,qx,qy,qz,buttons\n0,0.02,0.006,0.033,1,0,0,0,0\n0.4,0.02,0.006,0.033,1,0,0,0,1\n"
+              "0.5,0.02,0.026,0.033,1,0,0,0,1\n");
+    const Ended ended = runProgram(folder_.path(), {"simulate", "scene.toml", "--trajectory", "right.csv",
+                                                    "--trajectory", "left.csv", "--out", "r.csv", "--out", "l.csv"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    const fake::CsvFile right = fake::readCsv(readText(folder_ / "r.csv")),
+                        left = fake::readCsv(readText(folder_ / "l.csv"));
+    auto columns = kColumns;
+    columns.push_back("held_part");
+    EXPECT_EQ(right.header, columns);
+    for (std::size_t i = 0; i <= 500; ++i) {
+        EXPECT_EQ(right.at(i, "held_part"), i > 100 && i <= 300 ? "block" : "NA") << i;
+        EXPECT_EQ(left.at(i, "held_part"), i > 400 ? "block" : "NA") << i;
+        if (i > 100 && i <= 300)
+            EXPECT_NEAR(number(right, i, "proxy_x_m"), 1e-4 * static_cast<double>(i - 100), 1e-9) << i;
+    }
+    EXPECT_NEAR(number(right, 300, "proxy_z_m"), 0.031, 1e-9);
+    EXPECT_NEAR(number(left, 401, "proxy_z_m"), 0.031, 1e-8);
+    EXPECT_NEAR(number(left, 500, "proxy_y_m"), 0.02, 1e-8);
+}
+
 TEST_F(Simulate, PenaltyForceOnAPlaneIsStiffnessTimesDepth) {
     // Truth: closed form (|F| = K d, upwards; the block's sides are sampled at random places, so that what their points
     // press to the left and to the right cancels to 1 % only)
