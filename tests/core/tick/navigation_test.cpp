@@ -12,6 +12,7 @@
 
 #include "core/base/random.h"
 #include "tests/support/fields.h"
+#include "tests/support/rt_guard.h"
 #include "tests/support/scenes.h"
 
 namespace passung {
@@ -751,6 +752,24 @@ TEST(Navigation, BeginsWithTheTrialAndWithGoodSamples) {
         reading.buttons = reading.fresh ? 0u : kClutch;
         EXPECT_FALSE(lost.step(reading).frame.clutched);
     }
+}
+
+TEST(Navigation, AllocatesLocksAndWritesNothing) {
+    // Truth: invariant, counted by the guard: buttons that come and go in contact and in the air, a part that weighs.
+    if (!support::RtGuard::available()) GTEST_SKIP();
+    auto spec = ballOverPlate(scene::ContactMethod::GodObject, 1e-3, scene::Geometry::ClosedForm);
+    spec.parts[0].density = 7850.0;
+    spec.effects.weight.gravity = Vec3(0, 0, -9.8);
+    spec.effects.navigation = {.clutch = {2, true}, .second_scale = {3, 0.5}, .drift = {0.2, 0.05}};
+    test::Bench bench(spec);
+    const support::RtGuard guard;
+    for (int i = 0; i < 3000; ++i) {
+        DeviceReading reading{.X_BD = spec.parts[0].X_WP};
+        reading.X_BD.p += Vec3(1e-3 * std::sin(0.01 * i), 0, 3e-3 * std::sin(0.02 * i));
+        reading.buttons = i % 300 > 200 ? kClutch : i % 170 > 100 ? kScale : 0u;
+        bench.step(reading);
+    }
+    EXPECT_EQ(guard.violations(), 0) << guard.describe();
 }
 
 TEST(Navigation, OfAWrongValueIsRefused) {
