@@ -49,19 +49,19 @@ struct PlacedMetric {
 ///   2K · 1   and   2 K_φ + 2K (|d|² - d dᵀ),   and none across the two,
 /// because the levers from c add up to zero. So S² = ρ² + |d|² - d dᵀ: ρ about the line between the hands, and
 /// (ρ² + |d|²)^½ =: `across` about every axis across it; that is the energy's Cholesky factor, and u has its metric
-/// over 2K.
+/// over 2K. Springs that are pulled apart by s each along the line hold it stiffer across: |d| s more in the square.
 struct Metric {
     double radius = 1.0;         // ρ [m], > 0
     Vec3 p_GC = Vec3::Zero();    // c, in the part [m]
     double across = 0.0;         // [m], ≥ ρ; 0: as ρ
     Vec3 axis_G = Vec3::Zero();  // of the line between two hands, in the part; unit
 
-    /// Of a part that two hands hold.
-    static Metric betweenHands(double rho, const Vec3& c_1, const Vec3& c_2) noexcept {
+    /// Of a part that two hands hold; `pulled`: what springs that are stretched add to the square of `across` [m²].
+    static Metric betweenHands(double rho, const Vec3& c_1, const Vec3& c_2, double pulled = 0.0) noexcept {
         const Vec3 d = 0.5 * (c_1 - c_2);
         const double arm = d.norm();
         if (!(arm > 0.0)) return {rho, c_1};
-        return {rho, 0.5 * (c_1 + c_2), std::sqrt(rho * rho + arm * arm), d / arm};
+        return {rho, 0.5 * (c_1 + c_2), std::sqrt(rho * rho + arm * arm + pulled), d / arm};
     }
     PlacedMetric at(const Pose& X) const noexcept {
         return {radius, centre(X), across, across == 0.0 ? axis_G : Vec3(X.q * axis_G)};
@@ -99,30 +99,43 @@ struct TwoSprings {
         Vec3 p_GC = Vec3::Zero();  // where it holds it, in the part [m]
     };
     std::array<Spring, 2> springs;
+    double turn = 0.0;         // K_φ/K [m²], ≥ 0
     Vec3 load = Vec3::Zero();  // f/K [m], world
     Vec3 p_GM = Vec3::Zero();  // where that acts, in the part [m]
 
     /// Minus the energy's gradient over 2K, with the part at `X`, by a motion in `metric` (Metric::betweenHands):
-    ///   w = (½ (Σ t_i - c_i + f/K),  ½ S⁻¹ (Σ (c_i - c) × (t_i - c_i) + ρ² ψ_i + (m - c) × f/K)),
+    ///   w = (½ (Σ t_i - c_i + f/K),  ½ S⁻¹ (Σ (c_i - c) × (t_i - c_i) + K_φ/K ψ_i + (m - c) × f/K)),
     /// t_i where the hand asks c_i to be, ψ_i the turn from the part to where it asks it to be. Exact at any stretch,
     /// so that where the rows of contacts hold w, all forces balance.
     Motion wantedAt(const Metric& metric, const Pose& X) const noexcept {
         const PlacedMetric here = metric.at(X);
-        Vec3 along = load, turn = (X * p_GM - here.centre).cross(load);
+        Vec3 along = load, about = (X * p_GM - here.centre).cross(load);
         for (const Spring& spring : springs) {
             const Vec3 c = X * spring.p_GC, stretch = spring.X_WT * spring.p_GC - c;
             along += stretch;
-            turn += (c - here.centre).cross(stretch) +
-                    metric.radius * metric.radius * rotationVector(spring.X_WT.q * X.q.conjugate());
+            about += (c - here.centre).cross(stretch) + turn * rotationVector(spring.X_WT.q * X.q.conjugate());
         }
         Motion w;
-        w << 0.5 * along, here.perTurn(0.5 * turn);
+        w << 0.5 * along, here.perTurn(0.5 * about);
         return w;
+    }
+
+    /// What their stretch adds to the square of Metric::across, with the part at `X`: > 0 where they are pulled apart
+    /// [m²].
+    double pulledAt(const Pose& X) const noexcept {
+        const Vec3 c = 0.5 * (X * springs[0].p_GC + X * springs[1].p_GC);
+        double pulled = 0.0;
+        for (const Spring& spring : springs) {
+            const Vec3 held = X * spring.p_GC;
+            pulled += 0.5 * (held - c).dot(spring.X_WT * spring.p_GC - held);
+        }
+        return pulled;
     }
 
     static constexpr int kMostSteps = 20;
     static constexpr double kSettled = 1e-12;  // [m]
-    /// Where both springs hold the part without contacts: Newton's method from `X` on, in the metric above.
+    /// Where both springs hold the part without contacts: from `X` on by steps of `w`, which is the way there but for
+    /// what the metric errs by.
     Pose restFrom(const Metric& metric, Pose X) const noexcept {
         for (int i = 0; i < kMostSteps; ++i) {
             const Motion w = wantedAt(metric, X);

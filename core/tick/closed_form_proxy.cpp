@@ -16,8 +16,8 @@ void noteHold(const HandModel& model, const HeldTarget& target, const Proxy& pro
     clearPushes(pushes);
     for (const closed_form::HeldContact& held : hold.all()) {
         const Vec3 push = held.push * held.contact.normal;
-        addPush(model, target, proxy.X_WG, held.contact.point, push, model.contact.stiffness * push.norm(),
-                pushes.pushes[held.pair]);
+        addPush(model, target, proxy.X_WG, held.contact.point, push,
+                model.contact.stiffness * target.springs * push.norm(), pushes.pushes[held.pair]);
     }
 }
 

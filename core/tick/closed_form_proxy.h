@@ -45,7 +45,6 @@ struct ClosedFormMemory {
     std::vector<closed_form::ContactSearch> at_hand;
     geometry::NearList near_hand;
     closed_form::SearchMemory search;
-    closed_form::PairContacts found;
     bool has_thread = false;
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/tick/weight.h"
+
 namespace passung::tick {
 
 namespace {
@@ -53,7 +55,7 @@ void notePushes(const HandModel& model, const HeldTarget& target, const Proxy& p
         const motion::ActiveContact& held = motion.active_contacts[static_cast<std::size_t>(i)];
         const contact::ContactPoint& contact = proxy.manifold[held.contact];
         add(pushes.pushes[contact.obstacle], push.at(contact.position, held.push * contact.gradient.normalized()),
-            model.contact.stiffness * held.push);
+            model.contact.stiffness * target.springs * held.push);
     }
     for (int p = 0; p < rubbing.count; ++p) {
         const motion::FrictionPatch& patch = rubbing.patch[static_cast<std::size_t>(p)];
@@ -62,10 +64,16 @@ void notePushes(const HandModel& model, const HeldTarget& target, const Proxy& p
     }
 }
 
-void sharePushes(const HandModel&, const HandSample& hand, const HandWrench& wrench, Pushes& pushes) noexcept {
+void sharePushes(const HandModel& model, const HandSample& hand, const Grip& grip, const HandWrench& wrench,
+                 Pushes& pushes) noexcept {
     if (!hand.input_usable) clearPushes(pushes);
     double pressure = 0.0;
     Wrench rest = wrench.F_H_W;
+    if (grip.shared && model.hasWeight()) {
+        const Wrench weight = borneWeight(model, hand, grip, wrench.F_H_W);
+        rest.force -= weight.force;
+        rest.torque -= weight.torque;
+    }
     for (const std::uint32_t i : pushes.pushes.held()) {
         const ObstaclePush& push = pushes.pushes[i];
         pressure += push.pressure;

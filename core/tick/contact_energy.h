@@ -2,6 +2,7 @@
 
 #include "core/motion/friction.h"
 #include "core/tick/energy_account.h"
+#include "core/tick/grip.h"
 #include "core/tick/hand_model.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/tick_frame.h"
@@ -37,7 +38,8 @@ void notePushes(const HandModel& model, const HeldTarget& target, const Proxy& p
                 Pushes& pushes) noexcept;
 
 /// Stage, of scenes with obstacles: shares out what else is in F_H_W. After the wrench, before its delay.
-void sharePushes(const HandModel& model, const HandSample& hand, const HandWrench& wrench, Pushes& pushes) noexcept;
+void sharePushes(const HandModel& model, const HandSample& hand, const Grip& grip, const HandWrench& wrench,
+                 Pushes& pushes) noexcept;
 inline constexpr StageOf kContactShares{
     sharePushes,
     {.name = "contact shares",

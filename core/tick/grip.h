@@ -10,7 +10,6 @@ struct Grip {
     Pose X_DG;                 // held part in the handle
     Vec3 p_GC = Vec3::Zero();  // the point of it that the hand holds and the coupling's springs act on, in the part [m]
     bool shared = false;       // another hand holds the part too
-    double share = 1.0;        // of its weight, that the account of this hand's energy counts (weight.h)
 
     /// From the part's origin to that point, world axes, with the part turned by `R_WG` [m].
     Vec3 leverOf(const Quat& R_WG) const noexcept { return R_WG * p_GC; }

@@ -23,11 +23,11 @@ namespace passung::tick {
 /// A part with weight goes to where it would rest in the air (weight.h); that is its hand's pose below, and its weight
 /// is in what it pushes others with.
 ///
-/// Symbols: h a hand, H_h and G_h its pose and its proxy, K the coupling's stiffness, which all hands share, ρ_h its
-/// metric radius, ρ_h² = K_φ/K; u_h the motion of G_h that is looked for, w_h the way from G_h to H_h, both (Δx, ρ_h
-/// Δφ); i a contact of the part in hand h at point P_i with normal n_i away from the obstacle and room g_i to go before
-/// it holds; r_ih = P_i - o_h, o_h the part's origin.
-///   min Σ_h ½K |u_h - w_h|²   s.t.   a_ih · u_h - a_ij · u_j ≥ -g_i,   a_ih = (n_i, r_ih × n_i / ρ_h),
+/// Symbols: h a hand, H_h and G_h its pose and its proxy, K the coupling's stiffness, which all hands share; u_h the
+/// motion of G_h that is looked for, w_h the way from G_h to H_h, both in the hand's metric (motion/metric.h: c_h, S_h),
+/// of a part in two hands times √2, as K counts twice there; i a contact of the part in hand h at point P_i with normal
+/// n_i away from the obstacle and room g_i to go before it holds; r_ih = P_i - c_h.
+///   min Σ_h ½K |u_h - w_h|²   s.t.   a_ih · u_h - a_ij · u_j ≥ -g_i,   a_ih = (n_i, S_h⁻¹ r_ih × n_i),
 /// the second term only where the obstacle is in hand j: strictly convex in six unknowns a hand, solved exactly
 /// (active_set.h). Its multipliers λ_i ≥ 0 are the contacts' forces K λ_i n_i, on one part and against the other.
 /// The contacts are those that each proxy's own search left in its last turn, the first kMostBalanced. What none of

@@ -73,6 +73,54 @@ HandState makeHandState(const HandModel& model) {
     return state;
 }
 
+void measureBy(const HandModel& model, const motion::Metric& metric, int springs, HandState& hand) noexcept {
+    hand.metric = metric;
+    hand.springs = springs;
+    if (model.hasClosedForm()) hand.solver.measureBy(metric);
+    if (model.hasSurfaces()) hand.surface->measureBy(metric);
+    if (model.hasFieldProxy()) hand.step.look.open = false;
+}
+
+void regrip(const Pose& X_DG, const Vec3& p_GC, HandState& hand) noexcept {
+    const Pose change = hand.X_DG.inverse() * X_DG;
+    hand.X_DG = X_DG;
+    hand.X_DG.q.normalize();
+    hand.p_GC = p_GC;
+    hand.sample.X_WH = hand.sample.X_WH * change;
+    hand.clutch.noted = false;
+    hand.touching = false;
+}
+
+void placeObstacles(const HandModel& model, std::span<const Pose> X_WP, HandState& hand) noexcept {
+    const auto rest = [&](std::uint32_t i, geometry::NearList& near) {
+        near.carry(i, hand.X_WO[i]);
+        near.rest(i);
+    };
+    for (const std::uint32_t i : model.moving) {
+        const Pose& now = X_WP[model.obstacles[i].body];
+        const bool in_hand = std::any_of(hand.inHands().begin(), hand.inHands().end(),
+                                         [i](const ObstaclePoses::Carried& carried) { return carried.obstacle == i; });
+        const bool same = now.p == hand.X_WO[i].p && now.q.coeffs() == hand.X_WO[i].q.coeffs();
+        if (same && !in_hand) continue;
+        hand.X_WO_known[i] = hand.X_WO[i] = now;
+        if (model.hasClosedForm()) {
+            hand.solver.place(i, now);
+            hand.at_hand[i].place(now);
+            rest(i, hand.solver.near());
+            rest(i, hand.near_hand);
+        } else if (model.hasSurfaces()) {
+            hand.surface->leaveBody(surfaceBodyOf(model, i));
+            hand.surface->moveBody(surfaceBodyOf(model, i), now);
+        } else if (model.geometry == scene::Geometry::Field && !model.follows) {
+            hand.manifold_reach = -1.0;
+            hand.step.look.open = false;
+            rest(i, hand.around_proxy.near);
+            rest(i, hand.around_hand.near);
+        }
+    }
+    hand.carried_count = 0;
+}
+
 namespace {
 
 template <class... Part>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "core/tick/closed_form_proxy.h"
 #include "core/tick/common_way.h"
@@ -61,6 +62,14 @@ struct PartState : Parts<ObstaclePoses, HeldTarget, Proxy, ProxyMotion, ProxyFil
 
 /// The state before the first tick, with all memory that the ticks will need.
 HandState makeHandState(const HandModel& model);
+
+/// How a hand holds its part changes; the handle and the part stay where they are. All rt-safe.
+/// The part's motions are measured by `metric` from now on, and drawn by so many hands' springs.
+void measureBy(const HandModel& model, const motion::Metric& metric, int springs, HandState& hand) noexcept;
+/// The part is at `X_DG` in the handle, and held at `p_GC`.
+void regrip(const Pose& X_DG, const Vec3& p_GC, HandState& hand) noexcept;
+/// All obstacles that move are where `X_WP` says, and rest there; what was known of them is void where they do not.
+void placeObstacles(const HandModel& model, std::span<const Pose> X_WP, HandState& hand) noexcept;
 
 /// Exchanges what goes with the part. rt-safe.
 void swapParts(HandState& hand, PartState& part) noexcept;

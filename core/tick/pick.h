@@ -28,11 +28,14 @@ struct TickState;
 ///
 /// In two hands (god objects only). The hand that closed first goes on to move the part: by both springs, each where
 /// its hand holds it (motion::TwoSprings), and the second one follows it (followed_part.h). When the first opens the
-/// second goes on alone, and when the second does the first: nothing is laid down. So parts are handed over.
+/// second goes on alone, and when the second does the first: nothing is laid down. So parts are handed over. A device
+/// that is believed to be elsewhere (input_guard.h) gets another grip at the same part, whose other hand it does not
+/// tear it from.
 ///
 /// Opening. The part stays where its proxy is, which overlaps nothing, each number rounded to the nearest single
-/// precision: as the record has it, so that the records alone tell where every part is. It rests there, for others
-/// too, until somebody closes on it; with `locks` for good. The hand's wrench ends with what its spring held, at once.
+/// precision: as a record has the proxy's pose, so that it tells where the part is left. It rests there, for others
+/// too, until somebody closes on it; with `locks` for good. The hand's wrench ends with what its spring held, at once,
+/// and with what an output delay still had of it.
 ///
 /// Cost. Nothing where the scene names no pick: no call, no memory. Else, when a hand closes, a look at the box of
 /// every pickable part and at the faces of those near; in other ticks a comparison for each hand. What a part takes of
@@ -40,7 +43,8 @@ struct TickState;
 struct Hold {
     std::size_t body = kNoBody;     // that the hand holds
     std::size_t let_go = kNoBody;   // that it let go at the end of the tick before
-    bool down = false;              // the button, in the last tick with a usable sample
+    bool down = false;              // the button, in the last tick with a good new sample
+    bool seen = false;              // there was one
     std::size_t partner = kNoHand;  // that holds the same part
     bool follows = false;           // the partner moves it
     static constexpr std::size_t kNoHand = ~std::size_t{0};

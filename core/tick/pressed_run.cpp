@@ -24,10 +24,11 @@ constexpr double kNearest = 1e-3, kFarthest = 10.0;  // [m] in which a contact i
 Vec3 wayToContact(const Pose& X_WG, ClosedFormMemory& memory) {
     const closed_form::Contact* nearest = nullptr;
     closed_form::Contact best;
+    closed_form::PairContacts found;
     for (double reach = kNearest; nearest == nullptr && reach < kFarthest; reach *= 2.0)
         for (closed_form::ContactSearch& search : memory.at_hand) {
-            search.find(X_WG, reach, memory.found);
-            for (const closed_form::Contact& contact : memory.found.all()) {
+            search.find(X_WG, reach, found);
+            for (const closed_form::Contact& contact : found.all()) {
                 if (nearest != nullptr && best.gap <= contact.gap) continue;
                 best = contact;
                 nearest = &best;

@@ -127,7 +127,7 @@ struct ProxyMotion {
     static constexpr bool kHandedOn = true;
     motion::FrictionPatches rubbing;  // of the last motion in contact
     ActivePoints held;                // of the last motion: where the solver of the next one begins
-    double last_motion = 0.0;         // of the proxy, in the metric of metric_radius [m]
+    double last_motion = 0.0;         // of the proxy, in the metric of then [m]
 };
 
 /// Memory of queries. Handed on, but what is in it is nobody's: each stage finds it in any state.

@@ -37,24 +37,31 @@ std::size_t SceneModels::size() const noexcept { return models_.size(); }
 const TickModel& SceneModels::operator[](std::size_t i) const noexcept { return models_[i]; }
 
 std::vector<Stage> SceneModels::stages(std::size_t i) const {
-    std::vector<Stage> all = models_[i].hands.front().stages;
-    for (const HandModel& hand : models_[i].hands) {
+    const TickModel& model = models_[i];
+    std::vector<Stage> all = model.hands.front().stages;
+    const auto add = [&all](const HandModel& hand) {
         auto place = all.begin();
         for (const Stage& stage : hand.stages) {
             const auto known = std::find_if(all.begin(), all.end(), [&](const Stage& s) { return s.run == stage.run; });
             place = (known != all.end() ? known : all.insert(place, stage)) + 1;
         }
-    }
+    };
+    for (const HandModel& hand : model.hands) add(hand);
+    for (const auto* held : {&model.carrying, &model.following})
+        for (const auto& of_hand : *held)
+            if (!of_hand.empty()) add(of_hand.front());
     return all;
 }
 
 std::vector<SparedStage> SceneModels::spared(std::size_t i) const {
     const std::vector<Stage> run = stages(i);
-    std::vector<SparedStage> spared = models_[i].hands.front().spared;
+    const TickModel& model = models_[i];
+    const bool begins_empty = !model.hands.front().hasPart() && model.canPick(0);
+    std::vector<SparedStage> spared = (begins_empty ? model.carrying.front() : model.hands).front().spared;
     std::erase_if(spared, [&](const SparedStage& stage) {
         return std::any_of(run.begin(), run.end(), [&](const Stage& other) { return other.name == stage.name; });
     });
-    if (!models_[i].picks()) spared.push_back({"picking up", "effects.pick is not set: hands keep what they hold"});
+    if (!model.picks()) spared.push_back({"picking up", "effects.pick is not set: hands keep what they hold"});
     return spared;
 }
 

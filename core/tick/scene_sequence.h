@@ -30,7 +30,8 @@ public:
     std::size_t size() const noexcept;
     /// @pre `i` < size()
     const TickModel& operator[](std::size_t i) const noexcept;
-    /// Those of the scene number `i`, in the order of the tick; of several hands each once. @pre `i` < size()
+    /// Those of the scene number `i`, in the order of the tick; of several hands, and of all that they may hold, each
+    /// once. @pre `i` < size()
     std::vector<Stage> stages(std::size_t i) const;
     /// Those that scene number `i` does without, in whichever hand; a stage that one hand has is not among them.
     std::vector<SparedStage> spared(std::size_t i) const;

@@ -78,7 +78,7 @@ std::size_t runStages(const HandModel& model, HandState& state, TickFrame& frame
 
 /// Work that all hands' proxies may do in a tick, and what one has done.
 std::uint32_t mostWork(const HandModel& model) noexcept {
-    return model.hasSurfaces() ? static_cast<std::uint32_t>(kSurfaceBudget) : kFieldBudget;
+    return model.geometry == scene::Geometry::Surface ? static_cast<std::uint32_t>(kSurfaceBudget) : kFieldBudget;
 }
 std::uint32_t workDone(const HandModel& model, const TickFrame& frame) noexcept {
     return model.hasSurfaces() ? frame.nodes_visited : frame.work;
@@ -113,19 +113,47 @@ std::size_t sense(const HandModel& model, TickState& whole, std::size_t hand, co
     frame = TickFrame{};
     frame.reading = reading;
     noteOthers(model, whole, hand, state);
+    const bool engaged = state.engaged;
     const std::size_t next = runStages(model, state, frame, 0, true, watch);
+    if (!engaged && state.engaged && !whole.waiting.empty() && !model.follows) {
+        placeObstacles(model, whole.X_WP, state);  // where others have left them
+        noteOthers(model, whole, hand, state);
+    }
     // Parts without a proxy are where their hands are, each for the others too.
     if (state.engaged && model.rendersAtHand()) whole.X_WP[model.body] = frame.X_WH;
     return next;
 }
 
+// Of what stretched springs add to the metric's square, and of what is rounded there
+constexpr double kPulledRoom = 1.3, kPulledTooMuch = 2.0, kRoundingOfSquare = 1e-9;
+
 /// Two hands' springs on one part, and where it would rest. The first one's state takes them.
-void drawTogether(const HandModel& model, HandState& first, const Pose& X_WH, const HandState& second,
+void drawTogether(const HandInTick& first, const Pose& X_WH, const HandState& second,
                   const Pose& X_WH_second) noexcept {
-    first.two_springs = {.springs = {{{X_WH, first.p_GC}, {X_WH_second, second.p_GC}}},
-                         .load = model.weight / model.contact.stiffness,
+    const HandModel& model = *first.model;
+    HandState& state = *first.state;
+    const scene::ContactSpec& contact = model.contact;
+    state.two_springs = {.springs = {{{X_WH, state.p_GC}, {X_WH_second, second.p_GC}}},
+                         .turn = contact.rotational_stiffness / contact.stiffness,
+                         .load = model.weight / contact.stiffness,
                          .p_GM = model.centre};
-    first.X_WT = first.two_springs.restFrom(first.metric, first.X_WG);
+    // The metric follows the springs' stretch in leaps: between them it is stiffer than they are, by a factor at most.
+    const double rho = model.metric_radius, arm = 0.5 * (state.p_GC - second.p_GC).norm();
+    const double slack = rho * rho + arm * arm, pulled = std::max(0.0, state.two_springs.pulledAt(state.X_WG));
+    const double square = state.metric.across * state.metric.across;
+    if (square > 0.0 && (square < slack + pulled - kRoundingOfSquare * slack ||
+                         square > kPulledTooMuch * (slack + kPulledRoom * pulled)))
+        measureBy(model, motion::Metric::betweenHands(rho, state.p_GC, second.p_GC, kPulledRoom * pulled), 2, state);
+    state.X_WT = state.two_springs.restFrom(state.metric, state.X_WG);
+}
+
+/// A device is believed to be elsewhere: it holds the part there from now on, where that is.
+void holdThere(const HandModel& model, const Pose& X_WG, HandState& state, TickFrame& frame) noexcept {
+    const Pose X_WD = frame.X_WH * state.X_DG.inverse() * model.registration.X_DH, X_DP = X_WD.inverse() * X_WG;
+    regrip(model.registration.X_DH * X_DP, X_DP.inverse().p, state);
+    frame.X_WH = X_WG;
+    frame.relocated = false;
+    static_cast<Stretch&>(state) = {};
 }
 
 /// What the second of two hands learns of the part after the first one's turn.
@@ -141,8 +169,9 @@ void share(const HandState& first, const TickFrame& frame, HandState& second) no
 /// One hand's turn.
 void takeTurn(const HandModel& model, TickState& whole, HandState& state, std::size_t next, TickOutput& output,
               const StageWatch* watch) noexcept {
-    for (const ObstaclePoses::Carried& in_hand : state.inHands())
-        state.X_WO[in_hand.obstacle] = whole.X_WP[model.obstacles[in_hand.obstacle].body];
+    if (state.engaged)
+        for (const ObstaclePoses::Carried& in_hand : state.inHands())
+            state.X_WO[in_hand.obstacle] = whole.X_WP[model.obstacles[in_hand.obstacle].body];
     TickFrame& frame = output.frame;
     runStages(model, state, frame, next, false, watch);
     if (state.engaged) frame.status |= kEngaged;
@@ -169,19 +198,32 @@ void step(const TickModel& model, TickState& state, std::span<const DeviceReadin
     for (std::size_t i = 0; i < count; ++i) {
         const Hold& hold = state.holds[i];
         if (hold.partner == Hold::kNoHand || hold.follows) continue;
-        drawTogether(*all[i].model, state.hands[i], outputs[i].frame.X_WH, state.hands[hold.partner],
-                     outputs[hold.partner].frame.X_WH);
+        const std::size_t k = hold.partner;
+        bool regripped = false;
+        for (const std::size_t hand : {i, k}) {
+            if (!outputs[hand].frame.relocated) continue;
+            holdThere(*all[hand].model, state.hands[i].X_WG, state.hands[hand], outputs[hand].frame);
+            regripped = true;
+        }
+        if (regripped)
+            measureBy(
+                *all[i].model,
+                motion::Metric::betweenHands(all[i].model->metric_radius, state.hands[i].p_GC, state.hands[k].p_GC), 2,
+                state.hands[i]);
+        drawTogether(all[i], outputs[i].frame.X_WH, state.hands[k], outputs[k].frame.X_WH);
         X_WT[i] = state.hands[i].X_WT;
     }
     const auto hands = std::span(all).first(count);
     const std::size_t first = static_cast<std::size_t>(state.tick) % count;
     const Turns turns = balanceHands(hands, std::span(X_WT).first(count), first, state.balance);
+    const auto follow = std::count_if(hands.begin(), hands.end(), [](const HandInTick& h) { return h.model->follows; });
+    const auto sharers = static_cast<std::uint32_t>(count) - static_cast<std::uint32_t>(follow);
     std::uint32_t spared = 0;  // by those who had their turn
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t hand = turns[i];
         const HandModel& own = *hands[hand].model;
         if (own.follows) continue;  // after its partner
-        const std::uint32_t work = mostWork(own) / static_cast<std::uint32_t>(count) + spared;
+        const std::uint32_t work = mostWork(own) / sharers + spared;
         state.hands[hand].work = work;
         takeTurn(own, state, state.hands[hand], next[hand], outputs[hand], watch);
         spared = work - std::min(work, workDone(own, outputs[hand].frame));

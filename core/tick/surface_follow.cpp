@@ -16,7 +16,7 @@ void noteRows(const HandModel& model, const HeldTarget& target, const surface::S
     for (const surface::ContactRow& row : surface.rows()) {
         if (!(row.push > 0.0)) continue;
         addPush(model, target, surface.pose(), surface.pointOf(row), row.push * surface.normalOf(row),
-                model.contact.stiffness * row.push, pushes.pushes[obstacleOf(model, surface, row)]);
+                model.contact.stiffness * target.springs * row.push, pushes.pushes[obstacleOf(model, surface, row)]);
     }
 }
 

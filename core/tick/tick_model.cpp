@@ -6,20 +6,15 @@
 
 namespace passung::tick {
 
-namespace {
-
-/// Where `body` is among those that can be picked up.
-std::size_t placeOf(const TickModel& model, std::size_t body) noexcept {
-    const auto at = std::lower_bound(model.pickable.begin(), model.pickable.end(), body);
-    return static_cast<std::size_t>(at - model.pickable.begin());
+std::size_t TickModel::placeOf(std::size_t body) const noexcept {
+    const auto at = std::lower_bound(pickable.begin(), pickable.end(), body);
+    return static_cast<std::size_t>(at - pickable.begin());
 }
 
-}  // namespace
-
 const HandModel& TickModel::hand(std::size_t hand, std::size_t body, bool follows) const noexcept {
-    if (follows) return following[hand][placeOf(*this, body)];
+    if (follows) return following[hand][placeOf(body)];
     if (body == hands[hand].body) return hands[hand];
-    return body == kNoBody ? carrying[hand].back() : carrying[hand][placeOf(*this, body)];
+    return body == kNoBody ? carrying[hand].back() : carrying[hand][placeOf(body)];
 }
 
 TickModel makeModel(const scene::Scene& scene) {

@@ -25,6 +25,8 @@ struct TickModel {
 
     bool picks() const noexcept { return !pickable.empty(); }
     bool canPick(std::size_t hand) const noexcept { return picks() && !carrying[hand].empty(); }
+    /// Where `body` is among those that can be picked up.
+    std::size_t placeOf(std::size_t body) const noexcept;
     /// Two hands can hold one part.
     bool shares(std::size_t hand) const noexcept { return canPick(hand) && !following[hand].empty(); }
     /// A hand with what it holds. @pre it can hold that

@@ -18,7 +18,7 @@ struct TickState {
     std::vector<Pose> X_WP;                    // of every part; of one in a hand that of its proxy
     std::vector<HandState> hands;
     std::vector<Hold> holds;         // of each hand
-    std::vector<PartState> waiting;  // of each of TickModel::pickable; of one in a hand, what that hand has without it
+    std::vector<PartState> waiting;  // of each of TickModel::pickable; of one in a hand, what a hand has without a part
     std::vector<std::uint8_t> locked;  // of each part: nobody picks it up any more
     BalanceMemory balance;
 };

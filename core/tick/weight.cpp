@@ -1,5 +1,7 @@
 #include "core/tick/weight.h"
 
+#include <algorithm>
+
 namespace passung::tick {
 
 Wrench weightOf(const HandModel& model, const Quat& R_WG) noexcept {
@@ -17,6 +19,17 @@ double liftEnergy(const Hanging& hanging, const Pose& X_BD) noexcept {
     return -hanging.f_B.dot(X_BD.p + X_BD.q * hanging.p_D);
 }
 
+Wrench borneWeight(const HandModel& model, const HandSample& hand, const Grip& grip, const Wrench& F_H_W) noexcept {
+    const double share = std::clamp(F_H_W.force.dot(model.weight) / model.weight.squaredNorm(), 0.0, 1.0);
+    const Vec3 force = share * model.weight;
+    return {force, grip.leverOf(hand.X_WH.q).cross(force)};
+}
+
+double hangingTurn(const HandModel& model, const Vec3& p_GC) noexcept {
+    if (!model.hasWeight() || !model.hasProxy() || !model.hangsTurned()) return 0.0;
+    return model.weight.norm() * (model.centre - p_GC).norm() / model.contact.rotational_stiffness;
+}
+
 void hangPart(const HandModel& model, const HandSample& hand, const Grip& grip, const InputGuard& guard,
               Hang& hang) noexcept {
     hang.X_WR = hand.X_WH;
@@ -24,8 +37,7 @@ void hangPart(const HandModel& model, const HandSample& hand, const Grip& grip, 
     const scene::ContactSpec& c = model.contact;
     hang.X_WR.p += model.weight / c.stiffness;
     if (!model.hangsTurned()) return;
-    Vec3 turn = (hand.X_WH.q * (model.centre - grip.p_GC)).cross(model.weight) / c.rotational_stiffness;
-    if (const double angle = turn.norm(); angle > scene::kMostHangingTurn) turn *= scene::kMostHangingTurn / angle;
+    const Vec3 turn = (hand.X_WH.q * (model.centre - grip.p_GC)).cross(model.weight) / c.rotational_stiffness;
     hang.X_WR.q = rotationFromVector(turn) * hand.X_WH.q;
     hang.X_WR.q.normalize();
     hang.X_WR.p += grip.leverOf(hand.X_WH.q) - grip.leverOf(hang.X_WR.q);
@@ -35,8 +47,7 @@ void addWeight(const HandModel& model, const HandSample& hand, const Grip& grip,
                Pushes& pushes, HandWrench& wrench, Report& report) noexcept {
     report.status |= kWeighed;
     if (grip.shared) {  // the spring holds it
-        const Vec3 share = grip.share * model.weight;
-        if (hand.input_usable) pushes.pushes.back().wrench = {share, grip.leverOf(hand.X_WH.q).cross(share)};
+        if (hand.input_usable) pushes.pushes.back().wrench = borneWeight(model, hand, grip, wrench.F_H_W);
         return;
     }
     Wrench weight = weightOf(model, hand.X_WH.q);

@@ -37,16 +37,15 @@ struct Hang {
 /// springs carry it: |f|/K of overlap do.
 /// A penalty's tool: between hand and contact in the ratio of their springs; F is as exact as the tool settles.
 /// On a part in another hand: as on a table, and felt there (hand_balance.h).
-/// Held far from c: turned by kMostHangingTurn at most, and no more torque is felt than holds that.
+/// A hand closes on no part that would hang from it turned by more than kMostHangingTurn (pick.h).
 /// Arm: that of the part in the hand, R_H c, not R_G c: what hangs turns by |τ|/K_φ, and would carry the felt torque
 /// with it. So the wrench in the air follows from the hand's pose alone and has a potential, -f · (x_H + R_H c).
 /// Not conserved: where a contact turns the part by ψ against the hand, τ is off by up to |f||c||ψ|, and a closed way
 /// of the part's turn α may give or take |f||c||ψ| α.
 ///
 /// In two hands (motion::TwoSprings): the springs' rest pose is that of both with the weight, and each hand feels what
-/// its own spring holds; together they hold m g. Of the energy that lifting takes each hand's account leaves out a
-/// share as a beam on two supports bears it, s_1 = (c - x_2) · (x_1 - x_2) / |x_1 - x_2|² within 0 ... 1, s_2 = 1 -
-/// s_1.
+/// its own spring holds; together they hold m g. What of it is weight is what its force has along m g, within 0 ... 1
+/// times that: so much of lifting each hand's account leaves out, and no obstacle has (borneWeight).
 ///
 /// Stability: against turning, the weight is a spring of at most |f||c| a radian, which is no more than K_φ; against
 /// moving it is none.
@@ -62,6 +61,12 @@ Hanging hangingOf(const HandModel& model, const Grip& grip) noexcept;
 /// Work that lifting the part from the device's origin to where the handle is at `X_BD` takes, of that, up to a
 /// constant [J]. Of the handle's motion: the registration's scale does not enter. rt-safe.
 double liftEnergy(const Hanging& hanging, const Pose& X_BD) noexcept;
+
+/// Of the wrench on a hand that holds the part with another one, what is the part's weight: about the part's origin,
+/// world axes. rt-safe.
+Wrench borneWeight(const HandModel& model, const HandSample& hand, const Grip& grip, const Wrench& F_H_W) noexcept;
+/// Turns the part hangs by from a hand that holds it there [rad]; 0 where nothing hangs. rt-safe.
+double hangingTurn(const HandModel& model, const Vec3& p_GC) noexcept;
 
 /// Stages. The first finds R. Before there is a good sample the hand is where the proxy is (input_guard.h), and so is
 /// R.

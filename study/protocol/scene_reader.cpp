@@ -232,9 +232,9 @@ void checkSizes(const TableReader& contact_table, const scene::SceneSpec& scene,
     for (const auto& part : scene.parts) {
         const PartSurface* geometry = geometries.of(part);
         if (geometry == nullptr) continue;
-        if (part.held || contact.two_way)
+        if (part.moves() || contact.two_way)
             refuse("spacing_mm", part, scene::tooManyPoints(geometry->size, geometry->area, contact.spacing));
-        if (contact.cell > 0.0 && (!part.held || contact.two_way))
+        if (contact.cell > 0.0 && (!part.held || part.pickable || contact.two_way))
             refuse("cell_mm", part, scene::fieldTooLarge(geometry->size, geometry->area, contact.cell));
     }
 }

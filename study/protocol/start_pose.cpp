@@ -107,13 +107,15 @@ void checkStartPose(const Node& scene, const std::string& path, const scene::Sce
     const Node* parts = scene.find("part");
     if (parts == nullptr) return;
     for (const scene::PartSpec& held : spec.parts) {
-        if (!held.held) continue;
+        if (!held.moves()) continue;
         const Node& table = parts->items[static_cast<std::size_t>(&held - spec.parts.data())];
         const Node* pose = table.find("pose");
         const Node* position = pose != nullptr ? pose->find("position") : nullptr;
         const Node& where = position != nullptr ? *position : pose != nullptr ? *pose : table;
         for (const scene::PartSpec& obstacle : spec.parts) {
-            if (obstacle.held && obstacle.hand <= held.hand) continue;  // itself, and each pair once
+            // Itself, and each pair once.
+            if (obstacle.held && held.held ? obstacle.hand <= held.hand : obstacle.moves() && &obstacle <= &held)
+                continue;
             const double depth = depthAt(held, held.X_WP, obstacle, geometries);
             if (!(depth > spec.contact.tolerance)) continue;
             errors.push_back(

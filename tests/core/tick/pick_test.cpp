@@ -475,6 +475,160 @@ TEST_P(OfEachWay, TwoSpringsPressOnePartAgainstAWall) {
     EXPECT_NEAR(sum.torque.x(), lever * sum.force.z(), 4 * kStiffness * error * half + 1e-5);
 }
 
+TEST_P(OfEachWay, HandsThatPullFarApartHoldThePartStill) {
+    // Truth: closed form. Each hand pulls its end along the line between the grips, farther than the springs' own
+    // stiffness against turning would bear to be told of an unstretched pair (50 mm where the arm is 20 mm): the part
+    // stays in the middle, straight, and does not rattle.
+    auto spec = rodsOnTable(GetParam(), {lying(0, 0), lying(0.1, 0.1)}, 2);
+    spec.limits.max_force = 200.0;
+    Together pair(spec, Vec3(-0.02, 0, 0), Vec3(0.02, 0, 0), 0.05);
+    pair.X[0].p.x() -= 0.05;
+    pair.X[1].p += Vec3(0.05, 0, 0.001);
+    pair.go(300);
+    Pose before = pair.hands.partAt(1);
+    double rattle = 0.0;
+    for (int i = 0; i < 200; ++i) {
+        pair.hands.tick();
+        rattle = std::max(rattle, apart(pair.hands.partAt(1), before));
+        before = pair.hands.partAt(1);
+    }
+    EXPECT_LT(rattle, 1e-8 + 0.1 * GetParam().error);
+    const Wrench sum = pair.springs(before);
+    EXPECT_LT(sum.force.norm(), 2 * kStiffness * (0.05 * GetParam().error + 1e-8));
+    EXPECT_LT(sum.torque.norm(), 2 * kTurnStiffness * 1e-5);
+    EXPECT_LT(rotationVector(before.q).norm(), 0.05);
+}
+
+TEST_P(OfEachWay, ADeviceThatIsElsewhereTearsNoPartOutOfTheOtherHand) {
+    // Truth: the rule of pick.h. One device jumps by 1 m and stays there (input_guard.h): its hand holds the part at
+    // another point from then on; the part stays, and nobody feels more than before.
+    for (const std::size_t jumps : {0u, 1u}) {
+        auto spec = rodsOnTable(GetParam(), {lying(0, 0), lying(0.1, 0.1)}, 2);
+        spec.limits.max_speed = spec.other_hands.front().limits.max_speed = 3.0;
+        Together pair(spec, Vec3(-0.03, 0, 0.004), Vec3(0.035, 0.003, 0), 0.05);
+        const Pose before = pair.hands.partAt(1);
+        Pose there = pair.X[jumps];
+        there.p.y() += 1.0;
+        double most = 0.0;
+        std::uint32_t status = 0;
+        for (int i = 0; i < 400; ++i) {
+            pair.hands.step(there, true, jumps);
+            status |= pair.hands.output(jumps).frame.status;
+            for (const std::size_t hand : {0u, 1u}) most = std::max(most, pair.hands.output(hand).F_D_B.force.norm());
+        }
+        EXPECT_TRUE(status & kInputRelocated);
+        EXPECT_LT(most, 1e-3);
+        EXPECT_LT(apart(pair.hands.partAt(1), before), 1e-6);
+        there.p.z() += 0.01;
+        pair.hands.go(there, 100, true, jumps);
+        EXPECT_EQ(pair.hands.output(jumps).held, 1);
+        EXPECT_GT(pair.hands.output(jumps).F_D_B.force.norm(), 1e-3) << "it goes on holding";
+    }
+}
+
+TEST_P(OfEachWay, WhatWasLaidDownWhileAHandWaitedAtItsGateIsThere) {
+    // Truth: geometry. One hand lays a rod under another one's before that one's trial begins.
+    auto spec = rodsOnTable(GetParam(), {at(0, 0, 0.06), lying(0.12, 0)}, 2);
+    spec.parts[1].held = true;
+    spec.start_gate = {.position_tolerance = 1e-3, .angle_tolerance = 0.1, .hold_ticks = 5};
+    Hands hands(spec);
+    const Pose away = at(0, 0.1, 0.06);
+    hands.set(away, false, 0);
+    const double top = kAbove + kWidth;
+    hands.go(at(0.12, 0, top), 50, false, 1);
+    hands.go(at(0.12, 0, top), 2, true, 1);
+    hands.go(at(0.12, 0, 0.02), 50, true, 1);
+    hands.go(at(0.0, 0, 0.02), 300, true, 1);
+    hands.go(at(0.0, 0, top), 100, true, 1);
+    hands.step(at(0.0, 0, top), false, 1);
+    hands.go(at(0.2, 0, 0.1), 200, false, 1);
+    hands.go(at(0, 0, 0.06), 100, false, 0);
+    hands.go(at(0, 0, 0.06), 20, false, 0);
+    hands.go(at(0, 0, 0.01), 200, false, 0);
+    hands.go(at(0, 0, 0.01), 100, false, 0);
+    EXPECT_NEAR(hands.partAt(1).p.z(), 1.5 * kWidth + kAbove, 2 * GetParam().error);
+    EXPECT_GT(hands.output(0).F_D_B.force.z(), 4.0);
+}
+
+TEST(Pick, JoiningAndLeavingGivesNoJolt) {
+    // Truth: invariant. With a damper, a second hand that closes on a heavy part, and one that opens, change no force
+    // but for what they hold themselves.
+    for (const Way& way : kWays) {
+        auto spec = rodsOnTable(way, {lying(0, 0)}, 2);
+        spec.parts[1].density = 2.0 / (kLength * kWidth * kWidth);
+        spec.effects.weight.gravity = Vec3(0, 0, -scene::kStandardGravity);
+        spec.contact.rotational_stiffness = 5.0;
+        spec.contact.damping = 2.0;
+        spec.contact.rotational_damping = 0.01;
+        spec.effects.transients = {.amplitude = 5.0, .frequency = 100.0, .decay = 0.02};
+        Hands hands(spec);
+        const Pose grip = at(0.01, 0, kAbove + kWidth);
+        hands.go(grip, 2, false, 0);
+        hands.go(grip, 2, true, 0);
+        hands.go(at(0.01, 0, 0.06), 200, true, 0);
+        hands.go(at(0.01, 0, 0.06), 200, true, 0);
+        const Vec3 before = hands.output(0).F_D_B.force;
+        EXPECT_NEAR(before.z(), -2 * scene::kStandardGravity, 1e-3) << way.name;
+        const Pose second = {Quat::Identity(), hands.partAt(1) * Vec3(-0.02, 0, 0.005)};
+        double most = 0.0;
+        for (int i = 0; i < 20; ++i) {
+            hands.step(second, i > 1, 1);
+            most = std::max(most, (hands.output(0).F_D_B.force - before).norm());
+        }
+        ASSERT_EQ(hands.output(1).held, 1) << way.name;
+        // The arm of the weight is that of the part, not of the hand, once two hold it: millimetres of it.
+        EXPECT_LT(most, 0.1) << way.name;
+        hands.step(second, false, 1);
+        for (int i = 0; i < 20; ++i) hands.step(second, false, 1);
+        EXPECT_NEAR((hands.output(0).F_D_B.force - before).norm(), 0.0, 1e-3) << way.name;
+    }
+}
+
+TEST(Pick, OnlyNewGoodSamplesOpenAHand) {
+    // Truth: the rule of pick.h. A stale tick, or one whose pose is none, says nothing of the button.
+    Hands hands(rodsOnTable(kWays[0], {lying(0, 0)}));
+    const Pose grip = at(0, 0, kAbove + kWidth);
+    hands.step(grip, false);
+    hands.step(grip, true);
+    std::vector<DeviceReading> readings(1);
+    std::vector<tick::TickOutput> outputs(1);
+    for (const bool stale : {true, false}) {
+        readings[0] = {.X_BD = stale ? grip : Pose{Quat(0, 0, 0, 0), Vec3::Zero()}, .fresh = !stale, .buttons = 0};
+        tick::step(hands.bench().whole(), hands.state(), readings, outputs);
+        EXPECT_EQ(hands.step(grip, true).held, 1);
+        EXPECT_EQ(hands.step(grip, true).held, 1);
+    }
+}
+
+TEST(Pick, AButtonThatIsDownFromTheStartIsNoPress) {
+    // Truth: the rule of pick.h. Neither before the gate opens, nor in a trial's first tick.
+    for (const bool gate : {false, true})
+        for (const bool on_press : {false, true}) {
+            auto spec = rodsOnTable(kWays[0], {lying(0, 0)});
+            spec.effects.pick.on_press = on_press;
+            if (gate) spec.start_gate = {0.1, 3.0, 5, at(0, 0, 0.02)};
+            Hands hands(spec);
+            for (int i = 0; i < 20; ++i) EXPECT_EQ(hands.step(at(0, 0, kAbove + kWidth), true).held, -1);
+            hands.step(at(0, 0, kAbove + kWidth), false);
+            hands.step(at(0, 0, kAbove + kWidth), true);
+            EXPECT_EQ(hands.step(at(0, 0, kAbove + kWidth), true).held, 1);
+        }
+}
+
+TEST(Pick, ClosesOnNoPartThatWouldHangTooFarTurned) {
+    // Truth: closed form. |m g| times the grip's distance from the centre over K_φ, at most 1 rad.
+    auto spec = rodsOnTable(kWays[0], {lying(0, 0)});
+    spec.parts[1].density = 2.0 / (kLength * kWidth * kWidth);
+    spec.effects.weight.gravity = Vec3(0, 0, -scene::kStandardGravity);
+    for (const double x : {0.02, 0.03}) {
+        Hands hands(spec);
+        const double z = kAbove + 0.5 * kWidth;
+        hands.step(at(x, 0, z), false);
+        hands.step(at(x, 0, z), true);
+        EXPECT_EQ(hands.step(at(x, 0, z), true).held, 2 * scene::kStandardGravity * x < kTurnStiffness ? 1 : -1) << x;
+    }
+}
+
 TEST_P(OfEachWay, APartInTwoHandsMeetsOneInAThird) {
     // Truth: closed form. Two springs against one: pressed together by d, the part in two hands gives way by d/3, the
     // other by 2 d/3, and 2 K d/3 pushes either.
