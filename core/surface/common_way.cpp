@@ -17,7 +17,7 @@ constexpr double kCommonRounding = 1e-10;  // [m]
 constexpr int kBackWork = 40;              // units of work, of one body
 constexpr double kBeyondWays = 2.0;        // of the way since the tick began: what may be met besides
 
-int workOf(const HullPair& pair, int looks) {
+int workOfLooks(const HullPair& pair, int looks) {
     return looks * (3 + static_cast<int>(pair.of_held.count + pair.of_obstacle.count) / 8);
 }
 
@@ -87,7 +87,7 @@ bool SurfaceProxy::keepsCommonWay(const NearPair& near) noexcept {
     Vec3 n0 = n, n1 = n;
     double s0 = separationAlong(pair, common.begin, n0);
     const double s1 = separationAlong(pair, body.P_next, n1);
-    tick_.work += workOf(pair, 1);
+    tick_.work += workOfLooks(pair, 1);
     if (s0 >= common.bent && s1 >= common.bent) return true;
     if (const Vec3 carried = back * n; s0 < s1) {
         const double s = separationAlong(pair, common.begin, carried);
@@ -108,7 +108,7 @@ bool SurfaceProxy::keepsCommonWay(const NearPair& near) noexcept {
         apart = !begin.meets && !end.meets && keepsApart(pair, way, begin.n, end.n, looks) &&
                 keepsApart(mirrored, mirrored_way, seenByPart(way.from, begin.n), seenByPart(way.to, end.n), looks);
     }
-    tick_.work += workOf(pair, looks);
+    tick_.work += workOfLooks(pair, looks);
     if (!apart && near.faces) common.crossed = crossedAtBegin(near.body);
     return apart || common.crossed;
 }
@@ -120,10 +120,10 @@ bool SurfaceProxy::crossedAtBegin(std::size_t i) noexcept {
         const NearPair& near = near_[k];
         if (near.body != i || !near.faces) continue;
         const HullPair pair = hulls(near.pair);
-        tick_.work += workOf(pair, 1);
+        tick_.work += workOfLooks(pair, 1);
         if (separationAlong(pair, begin, near.n) > kCrossed) continue;
         const NearestHulls then = nearestHulls(pair, begin, near.n, kCrossed, 0.0);
-        tick_.work += workOf(pair, then.looks);
+        tick_.work += workOfLooks(pair, then.looks);
         if (then.separation <= kCrossed) return true;
     }
     return false;

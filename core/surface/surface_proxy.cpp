@@ -83,6 +83,7 @@ void SurfaceProxy::place(const Pose& X_WG) noexcept {
     least_ = 0.0;
     overlaps_ = moved_ = false;
     left_to_lead_ = 0.0;
+    let_go_ = false;
     X_WH_last_.reset();
     gone_.setZero();
     since_held_ = kMostIdle + 1;
@@ -294,7 +295,8 @@ bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
         wanted_ += (times - 1.0) * u_;
         solve();
     }
-    const double most = isHeld() || since_held_ <= kMostIdle ? most_held_ : most_in_tick_, left = most - way_in_tick_;
+    const bool slow = isHeld() || since_held_ <= kMostIdle || let_go_;
+    const double most = slow ? most_held_ : most_in_tick_, left = most - way_in_tick_;
     if (left < kLeastLeft * most) return false;
     const double room = std::min(overlaps_ ? kFastest : trust_, left);
     limited_ = false;
@@ -504,6 +506,7 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH, const motion::TwoSpri
         if (isHeld()) refineLeast();
     }
     tell();
+    let_go_ = let_go_ && (pressed_ || wayBetween(P_, Placement(X_WH)) > kFastestHeld);
     if (tick_.active > 0)
         since_held_ = 0;
     else if (!tick_.suspended && !tick_.waits)

@@ -78,9 +78,10 @@ struct SurfaceTick {
 ///
 /// Bodies out of reach: boxes that are farther apart than any tick goes. Nothing of them is kept or looked at.
 ///
-/// Held by rows, and for three ticks after that, the proxy goes no faster than kFastestHeld, or half as fast again as
-/// the hand or a body that gives way: past an edge it slides through several ticks, and the force with it. Where rows
-/// turn with the pose, a look goes farther than they say (relaxation()).
+/// Held by rows, and for three ticks after that, or let go by another hand's part until it is with its own, the proxy
+/// goes no faster than kFastestHeld, or half as fast again as the hand or a body that gives way: past an edge it slides
+/// through several ticks, and the force with it. Where rows turn with the pose, a look goes farther than they say
+/// (relaxation()).
 ///
 /// A start in overlap: where triangles cross, out along what faces them and along the hand, until none do. Then, and at
 /// each place, it is asked whether something lies wholly within the other part (enclosure.h): if so, the held part goes
@@ -107,10 +108,13 @@ public:
     void setBudget(int budget) noexcept { budget_ = settings_.budget = budget; }
 
     /// Where the hand itself is in the next tick, which advance() may not be asked to follow, and how far the hands
-    /// have gone that hold bodies [m]. Unless that is told, a body's own way counts as its hand's. rt-safe.
-    void setHands(const Pose& X_WH, double others_way) noexcept {
+    /// have gone that hold bodies [m]. Unless that is told, a body's own way counts as its hand's. `pressed`: by one
+    /// that another hand moves, which may hold it without a row of its own. rt-safe.
+    void setHands(const Pose& X_WH, double others_way, bool pressed) noexcept {
         X_WH_told_ = X_WH;
         others_way_ = others_way;
+        let_go_ = let_go_ || pressed;
+        pressed_ = pressed;
     }
 
     /// Body `i` is in another hand, and was at X_WB when the tick began, the held part where it is now. From then on
@@ -267,7 +271,8 @@ private:
     Vec3 lead_ = Vec3::Zero();   // the way out of it, unit, world
     double left_to_lead_ = 0.0;  // [m]
     std::optional<Pose> X_WH_last_, X_WH_told_;
-    double others_way_ = 0.0;  // as it was told [m]
+    double others_way_ = 0.0;                // as it was told [m]
+    bool pressed_ = false, let_go_ = false;  // by another hand's part; and until it is where it is asked to go
 
     // Of the tick.
     const motion::TwoSprings* two_springs_ = nullptr;  // where two hands hold the part

@@ -66,7 +66,7 @@ void followOnSurface(const HandModel& model, const HandSample& hand, const HeldT
         follow.surface->moveBody(body, obstacles.X_WO[in_hand.obstacle]);
     }
     follow.surface->setBudget(static_cast<int>(target.work));
-    if (model.meetsHands()) follow.surface->setHands(hand.X_WH, target.others_way);
+    if (model.meetsHands()) follow.surface->setHands(hand.X_WH, target.others_way, target.contacts_of_hands > 0);
     // A spring from the old place would throw the hand across the room.
     if (hand.relocated) follow.surface->place(hand.X_WH);
     const surface::SurfaceTick& now = follow.surface->advance(target.X_WT, target.twoSprings());
