@@ -133,7 +133,8 @@ bool movesTheSame(const scene::ContactSpec& a, const scene::ContactSpec& b) {
     if (a.method != b.method || a.rendersAtHand() != b.rendersAtHand()) return false;
     if (a.rendersAtHand()) return true;
     const auto fields = [](const scene::ContactSpec& c) {
-        return std::tie(c.geometry, c.tolerance, c.cell, c.spacing, c.mode, c.budget_nodes, c.quality, c.two_way, c.proxy_filter);
+        return std::tie(c.geometry, c.tolerance, c.cell, c.spacing, c.mode, c.budget_nodes, c.quality, c.two_way,
+                        c.proxy_filter);
     };
     const auto tool = [](const scene::ContactSpec& c) {
         return std::tie(c.coupling, c.variant, c.stiffness, c.rotational_stiffness, c.damping, c.rotational_damping,
