@@ -83,7 +83,7 @@ TEST(Clutch, LeavesThePartAndGoesOnFromThere) {
             const Pose X_WH = output.frame.X_WH;
             EXPECT_EQ(output.frame.clutched, held);
             if (i <= 100) {
-                EXPECT_TRUE(same(X_WH, tick::registeredPose(spec.registration, X_BD)));
+                EXPECT_TRUE(same(X_WH, tick::registeredPose(spec.registration, X_BD, spec.registration.X_DH)));
                 expected = X_WH;
                 continue;
             }
@@ -254,9 +254,11 @@ TEST(Drift, IsTheIntegralOfItsRule) {
         tick::TickOutput output;
         for (const Vec3& place : places) output = bench.step(Pose{Quat::Identity(), place});
         EXPECT_LT(
-            apart(output.frame.X_WH,
-                  {spec.registration.X_WB.q,
-                   tick::registeredPose(spec.registration, {Quat::Identity(), places.back()}).p + output.frame.offset}),
+            apart(
+                output.frame.X_WH,
+                {spec.registration.X_WB.q,
+                 tick::registeredPose(spec.registration, {Quat::Identity(), places.back()}, spec.registration.X_DH).p +
+                     output.frame.offset}),
             1e-14);
         return Vec3(spec.registration.X_WB.q.conjugate() * output.frame.offset);
     };
@@ -596,6 +598,7 @@ TEST(Clutch, SendsTheShareThatItsGripLeaves) {
             model.weight = Vec3(0.1, 0.2, -0.7);
             tick::HandSample hand;
             hand.X_WH = {rotationFromVector({0.1, 0.5, -0.3}), Vec3(0.2, 0.1, 0.0)};
+            const tick::Grip grip{.X_DG = model.registration.X_DH};
             tick::HandMapping mapping;
             mapping.clutch.held = held;
             mapping.clutch.grip = 0.3;
@@ -606,11 +609,11 @@ TEST(Clutch, SendsTheShareThatItsGripLeaves) {
             pushes.pushes[1] = {weight, 0.0};
             tick::HandWrench wrench;
             wrench.F_H_W = {contact.force + weight.force, contact.torque + weight.torque};
-            tick::fadeWrench(model, hand, mapping, pushes, wrench);
+            tick::fadeWrench(model, hand, grip, mapping, pushes, wrench);
             const double share = held ? 0.3 : 1.0;
             const Wrench left = pushes.pushes[0].wrench, hung = pushes.pushes[1].wrench;
             EXPECT_LT((left.force - share * contact.force).norm(), 1e-15);
-            const Vec3 lever = tick::leverOf(model, hand);
+            const Vec3 lever = tick::leverOf(hand, grip);
             const Vec3 about = left.torque + lever.cross(left.force),
                        whole = contact.torque + lever.cross(contact.force);
             EXPECT_LT((orientation ? Vec3(left.torque - share * contact.torque) : Vec3(about - whole)).norm(), 1e-15);
@@ -802,7 +805,7 @@ TEST(Navigation, AlongAPathOfThePartIsThatOfTheScene) {
     for (int i = 0; i < 300; ++i) {
         DeviceReading reading{.X_BD = handleAt(i), .buttons = i > 100 && i < 200 ? kScale : 0u};
         const auto a = by_device.step(reading);
-        reading.X_BD = tick::registeredPose(spec.registration, reading.X_BD);
+        reading.X_BD = tick::registeredPose(spec.registration, reading.X_BD, spec.registration.X_DH);
         const auto b = by_path.step(reading);
         EXPECT_LT(apart(a.frame.X_WH, b.frame.X_WH), 1e-13) << i;
     }

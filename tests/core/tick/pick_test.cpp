@@ -88,6 +88,10 @@ public:
         tick();
         return outputs_[hand];
     }
+    void stepWith(const Pose& X_BD, std::uint32_t buttons) {
+        readings_[0] = {.X_BD = X_BD, .buttons = buttons};
+        tick();
+    }
     /// There within `ticks`; the others stay.
     const tick::TickOutput& go(const Pose& X_BD, int ticks, bool down, std::size_t hand = 0) {
         const Pose from = readings_[hand].X_BD;
@@ -585,6 +589,39 @@ TEST(Pick, JoiningAndLeavingGivesNoJolt) {
         for (int i = 0; i < 20; ++i) hands.step(second, false, 1);
         EXPECT_NEAR((hands.output(0).F_D_B.force - before).norm(), 0.0, 1e-3) << way.name;
     }
+}
+
+TEST_P(OfEachWay, AClutchTakesTheHandOutOfACarriedPartToo) {
+    // Truth: closed form. While the clutch is held the part stays; after it the part goes on by the hand's way. Between
+    // two parts the hand's place in the scene stays what the clutch made of it: nothing jumps when it closes or opens.
+    auto spec = rodsOnTable(GetParam(), {lying(0, 0), lying(0, 0.1)});
+    spec.effects.navigation.clutch = {.button = 2};
+    Hands hands(spec);
+    const Pose grip = at(0.02, 0, kAbove + kWidth);
+    hands.go(grip, 20, false);
+    hands.go(grip, 2, true);
+    hands.go(at(0.02, 0, 0.05), 100, true);
+    const Pose lifted = hands.partAt(1);
+    const auto clutched = [&](const Pose& to, int ticks, const Pose& from) {
+        for (int i = 0; i <= ticks; ++i)
+            hands.stepWith({from.q.slerp(1.0 * i / ticks, to.q), from.p + i * (to.p - from.p) / ticks}, kButton | 2u);
+    };
+    const Pose aside{rotationFromVector(Vec3(0, 0, 0.5)), Vec3(0.1, 0.05, 0.2)};
+    clutched(aside, 100, at(0.02, 0, 0.05));
+    EXPECT_LT(apart(hands.partAt(1), lifted), 1e-9);
+    hands.go(aside, 5, true);
+    EXPECT_LT(apart(hands.partAt(1), lifted), 1e-9);
+    Pose on = aside;
+    on.p.y() += 0.03;
+    hands.go(on, 100, true);
+    EXPECT_LT((hands.partAt(1).p - lifted.p - Vec3(0, 0.03, 0)).norm(), 1e-9);
+    const Pose rest = hands.partAt(1);
+    hands.go(on, 3, false);
+    const Pose empty = hands.output().frame.X_WH;
+    EXPECT_LT((empty.p - rest.p - Vec3(0.02, 0, kWidth / 2)).norm(), 1e-7) << "the hand's point stays at the part";
+    hands.go(on, 3, true);
+    EXPECT_EQ(hands.output().held, 1);
+    EXPECT_LT(apart(hands.partAt(1), rest), 1e-7);
 }
 
 TEST(Pick, OnlyNewGoodSamplesOpenAHand) {
