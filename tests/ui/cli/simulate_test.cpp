@@ -157,8 +157,8 @@ TEST_F(Simulate, PicksPartsUpByTheButtonsOfThePath) {
     for (std::size_t i = 0; i <= 500; ++i) {
         EXPECT_EQ(right.at(i, "held_part"), i > 100 && i <= 300 ? "block" : "NA") << i;
         EXPECT_EQ(left.at(i, "held_part"), i > 400 ? "block" : "NA") << i;
-        if (i > 100 && i <= 300)
-            EXPECT_NEAR(number(right, i, "proxy_x_m"), 1e-4 * static_cast<double>(i - 100), 1e-9) << i;
+        if (i <= 100 || i > 300) continue;
+        EXPECT_NEAR(number(right, i, "proxy_x_m"), 1e-4 * static_cast<double>(i - 100), 1e-9) << i;
     }
     EXPECT_NEAR(number(right, 300, "proxy_z_m"), 0.031, 1e-9);
     EXPECT_NEAR(number(left, 401, "proxy_z_m"), 0.031, 1e-8);
