@@ -47,7 +47,7 @@ every_job() {
     job 'clang, ASan, UBSan: files, data, program' ./dev asan-check
     job 'fuzzers' ./dev fuzz-check "$1"
     job 'TSan: threads' ./dev tsan-check
-    job 'lint of what changed' env PASSUNG_LINT_MINUTES="${PASSUNG_LINT_MINUTES:-3}" ./dev lint
+    job 'lint of what changed' env PASSUNG_LINT_MINUTES="${PASSUNG_LINT_MINUTES:-2}" ./dev lint
 }
 
 # edit_to_tests FILE ROOM: what somebody waits who changed FILE.
