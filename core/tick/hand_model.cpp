@@ -118,6 +118,7 @@ void addStages(HandModel& model, StageList<stage...>) {
 }  // namespace
 
 const char* contactInstead(const HandModel& model) noexcept {
+    if (!model.hasPart()) return "the hand holds nothing";
     if (!model.hasObstacles()) return "the scene has no obstacle";
     if (model.contact.method == scene::ContactMethod::Penalty)
         return model.rendersAtHand() ? "contact.method is penalty" : "contact.method is penalty, through a tool";

@@ -142,7 +142,11 @@ inline constexpr StageOf kFreeHand{followHand,
                                     .parameters = "",
                                     .cost = "constant",
                                     .needs = [](const HandModel& model) { return !model.hasObstacles(); },
-                                    .reason = [](const HandModel&) { return "the scene has no obstacle"; }}};
+                                    .reason =
+                                        [](const HandModel& model) {
+                                            return model.hasPart() ? "the scene has no obstacle"
+                                                                   : "the hand holds nothing";
+                                        }}};
 
 // Stages that follow the proxy's motion.
 
