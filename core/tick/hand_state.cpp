@@ -19,7 +19,7 @@ void addQueryMemory(const HandModel& model, Proxy& proxy, QueryMemory& memory) {
         return shell.points().size() + 2 * shell.nodes().size() + edges.stations().size();
     };
     std::size_t points = 0, both = 0;  // of the largest obstacle's
-    std::size_t nodes = model.hasPart() ? model.shell->nodes().size() : 0;
+    std::size_t nodes = model.shell->nodes().size();
     for (const Obstacle& obstacle : model.obstacles) {
         if (obstacle.shell == nullptr) continue;
         points = std::max(points, obstacle.shell->points().size());
@@ -68,7 +68,7 @@ HandState makeHandState(const HandModel& model) {
         static_cast<ClosedFormMemory&>(state) = closedFormMemory(model);
     else if (model.hasSurfaces())
         static_cast<SurfaceFollow&>(state) = surfaceFollow(model);
-    else if (model.geometry == scene::Geometry::Field)
+    else if (model.geometry == scene::Geometry::Field && model.hasPart() && !model.follows)
         addQueryMemory(model, state, state);
     return state;
 }
