@@ -132,7 +132,7 @@ geometry::NearList nearListOf(const HandModel& model, double beyond) {
     std::vector<geometry::NearPart> parts;
     for (const Obstacle& obstacle : model.obstacles) {
         const Body& body = model.bodies[obstacle.body];
-        geometry::NearPart& part = parts.emplace_back(geometry::NearPart{body.box, body.X_WP_start, false});
+        geometry::NearPart& part = parts.emplace_back(geometry::NearPart{body.box, body.X_WP_start});
         const double more = beyond + (body.field != nullptr ? body.field->sheetOffset() : 0.0);
         part.box.low.array() -= more;
         part.box.high.array() += more;

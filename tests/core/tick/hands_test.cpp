@@ -10,6 +10,7 @@
 #include "core/tick/scene_sequence.h"
 #include "core/tick/step.h"
 #include "core/tick/tick_state.h"
+#include "tests/support/contact_way.h"
 #include "tests/support/fields.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/scenes.h"
@@ -22,20 +23,11 @@ namespace {
 using scene::ContactMethod;
 using scene::Geometry;
 using shape::Box;
+using test::at;
+using Way = test::ContactWay;
 
 constexpr double kStiffness = 1000.0;   // [N/m]
 constexpr double kTurnStiffness = 0.1;  // [N·m/rad]
-
-Pose at(double x, double y, double z) { return {Quat::Identity(), Vec3(x, y, z)}; }
-
-/// How contact is computed in a test.
-struct Way {
-    const char* name;
-    ContactMethod method;
-    Geometry geometry;
-    double error;  // of a pose [m]
-};
-void PrintTo(const Way& way, std::ostream* out) { *out << way.name; }
 
 constexpr Way kClosedForm{"closed_form", ContactMethod::GodObject, Geometry::ClosedForm, 1e-7};
 constexpr Way kHeuristic{"closed_form_heuristic", ContactMethod::GodObjectHeuristic, Geometry::ClosedForm, 1e-7};

@@ -13,6 +13,7 @@
 #include "core/base/random.h"
 #include "core/tick/step.h"
 #include "core/tick/tick_state.h"
+#include "tests/support/contact_way.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/scenes.h"
 
@@ -24,22 +25,13 @@ namespace {
 using scene::ContactMethod;
 using scene::Geometry;
 using shape::Box;
+using test::at;
+using Way = test::ContactWay;
 
 constexpr double kStiffness = 1000.0;   // [N/m]
 constexpr double kTurnStiffness = 0.5;  // [N·m/rad]
 constexpr std::uint32_t kButton = 1u << 3;
 constexpr double kReach = 0.004;  // [m]
-
-Pose at(double x, double y, double z) { return {Quat::Identity(), Vec3(x, y, z)}; }
-
-/// How contact is computed in a test.
-struct Way {
-    const char* name;
-    ContactMethod method;
-    Geometry geometry;
-    double error;  // of a pose [m]
-};
-void PrintTo(const Way& way, std::ostream* out) { *out << way.name; }
 
 constexpr Way kWays[] = {{"closed_form", ContactMethod::GodObject, Geometry::ClosedForm, 2e-7},
                          {"closed_form_heuristic", ContactMethod::GodObjectHeuristic, Geometry::ClosedForm, 2e-7},
