@@ -81,6 +81,8 @@ struct TickRecord {
     float proxy_gap_m = std::numeric_limits<float>::quiet_NaN();
     // An output: which part the hand holds, in the order of the scene; kNoPart, or kPartNotTold of a recording without.
     std::int32_t held = kPartNotTold;
+    // An output of assemblies, one for all hands: the steps that were done as the tick began (core/scene/assembly.h).
+    std::uint64_t steps_done = 0;
     // Outputs of scenes with navigation (core/tick/navigation.h); of others the scale is NaN.
     std::uint32_t navigation_clutched = 0;                               // 1: the clutch is held
     float navigation_scale = std::numeric_limits<float>::quiet_NaN();    // scene metres per device metre now

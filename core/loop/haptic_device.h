@@ -7,6 +7,7 @@
 #include "core/base/tick_record.h"
 #include "core/base/types.h"
 #include "core/scene/scene_spec.h"
+#include "core/tick/scene_sequence.h"
 
 namespace passung::loop {
 
@@ -17,6 +18,17 @@ struct DisplayedImage {
     bool running = false;  // the trial has started, all hands are engaged (the "go" sign)
     // Every hand's part as drawn, in the order of the scene; of hands that it has not: identity.
     std::array<Pose, scene::kMostHands> X_WHeld = {};
+    // Which part that is, in the order of the scene; of a hand that holds none, and of one that the scene has not,
+    // kNoPart.
+    std::array<std::int32_t, scene::kMostHands> held = nobodyHolds();
+    tick::PartAtRest at_rest = {};  // of the parts that can be picked up one in turn, picture by picture
+    std::uint64_t steps_done = 0;   // of an assembly: drawn as such
+
+    static constexpr std::array<std::int32_t, scene::kMostHands> nobodyHolds() {
+        std::array<std::int32_t, scene::kMostHands> none{};
+        none.fill(kNoPart);
+        return none;
+    }
 };
 
 /// A haptic device, simulated or real. The loop calls read() then command() once a cycle, from one thread.

@@ -88,8 +88,9 @@ void HapticCycle::run(std::uint32_t missed) noexcept {
         if (i == 0)
             shown.record = record;
         else
-            shown.others[i - 1] = {outputs_[i].frame.X_WH, outputs_[i].X_WG};
+            shown.others[i - 1] = {outputs_[i].frame.X_WH, outputs_[i].X_WG, outputs_[i].held};
     }
+    shown.at_rest = scenes_.atRest(static_cast<std::uint64_t>(tick));
     for (ScreenRing* screen : screens_) screen->tryPush(shown);
     if (listener_ != nullptr) listener_->take(shown.record);
     if (hasPicture(tick)) show(tick, shown.engaged);
@@ -97,8 +98,12 @@ void HapticCycle::run(std::uint32_t missed) noexcept {
 
 void HapticCycle::show(std::int64_t tick, bool running) noexcept {
     DisplayedImage image{.tick = tick, .X_WShown = {}, .running = running};
-    for (std::size_t i = 0; i < hands_.size(); ++i)
+    image.steps_done = outputs_.front().steps_done;
+    image.at_rest = scenes_.atRest(pictures_++);
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
         image.X_WHeld[i] = show_proxy_ ? outputs_[i].X_WG : outputs_[i].frame.X_WH;
+        image.held[i] = outputs_[i].held;
+    }
     for (std::size_t i = 0; i < hands_.size(); ++i) {
         image.X_WShown = image.X_WHeld[i];
         hands_[i].device->show(image);

@@ -77,6 +77,7 @@ private:
     std::span<ScreenRing* const> screens_;
     TickListener* listener_;  // may be null
     bool timed_;
+    std::uint64_t pictures_ = 0;
     TimingHistogram timing_, processor_timing_;
 };
 

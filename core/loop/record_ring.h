@@ -11,6 +11,7 @@
 
 #include "core/base/tick_record.h"
 #include "core/scene/scene_spec.h"
+#include "core/tick/scene_sequence.h"
 
 namespace passung::loop {
 
@@ -55,9 +56,12 @@ private:
 
 using RecordRing = Ring<TickRecord>;
 
+using tick::PartAtRest;
+
 /// Where a hand's part is in a tick.
 struct HeldPart {
-    Pose X_WH, X_WG;  // where the device asks it to be, and its proxy
+    Pose X_WH, X_WG;              // where the device asks it to be, and its proxy
+    std::int32_t part = kNoPart;  // which one, in the order of the scene
 };
 
 /// What a screen learns of a tick.
@@ -66,6 +70,8 @@ struct ScreenTick {
     std::int64_t began_ns = 0;                                // when the devices had been read, on the steady clock
     std::array<HeldPart, scene::kMostHands - 1> others = {};  // the other hands' parts, in the order of the scene
     bool engaged = false;                                     // all hands are
+    PartAtRest at_rest = {};  // of the parts that can be picked up one in turn, tick by tick: so a screen that misses
+                              // ticks finds them all
 };
 using ScreenRing = Ring<ScreenTick>;
 

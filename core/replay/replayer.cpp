@@ -57,7 +57,10 @@ std::optional<Difference> compare(const TickRecord& recorded, const TickRecord& 
     comparison.field("torque_Nm", recorded.torque_Nm, replayed.torque_Nm);
     comparison.field("hand_depth_m", recorded.hand_depth_m, replayed.hand_depth_m);
     comparison.field("proxy_depth_m", recorded.proxy_depth_m, replayed.proxy_depth_m);
-    if (recorded.held != kPartNotTold) comparison.field("held", recorded.held, replayed.held);
+    if (recorded.held != kPartNotTold) {
+        comparison.field("held", recorded.held, replayed.held);
+        comparison.field("steps_done", recorded.steps_done, replayed.steps_done);
+    }
     comparison.known("proxy_gap_m", recorded.proxy_gap_m, replayed.proxy_gap_m);
     comparison.known("navigation_scale", recorded.navigation_scale, replayed.navigation_scale);
     comparison.field("navigation_clutched", recorded.navigation_clutched, replayed.navigation_clutched);

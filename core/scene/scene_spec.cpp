@@ -121,6 +121,13 @@ std::vector<Error> SceneSpec::validate() const {
             effects.pick.button != navigation.clutch.button && effects.pick.button != navigation.second_scale.button,
             "effects: pick: button", effects.pick.button, "must be another one than those of navigation");
     }
+    const int undo = effects.pick.undo_button;
+    check.require(undo >= 0 && undo <= kButtons && undo != effects.pick.button, "effects: pick: undo_button", undo,
+                  "must be 1 … 24, or 0 for none, and another one than effects.pick.button");
+    for (const StepProblem& problem : problemsOf(effects.pick.steps, *this))
+        check.errors.push_back(
+            {.message = problem.message,
+             .key = "effects: pick: step " + std::to_string(problem.step + 1) + ": " + std::string(problem.key)});
     check.require(pickable == effects.picks(), "effects: pick: reach", effects.pick.reach,
                   pickable ? "must be > 0 where a part is pickable" : "must be 0 where no part is pickable");
     check.positive("contact: stiffness", contact.stiffness);

@@ -11,6 +11,7 @@
 #include "core/base/result.h"
 #include "core/base/types.h"
 #include "core/field/field_mode.h"
+#include "core/scene/assembly.h"
 #include "core/shape/shape.h"
 
 namespace passung::scene {
@@ -124,6 +125,8 @@ struct Pick {
     int button = 1;         // 1 … kButtons
     bool on_press = false;  // each press closes or opens the hand; else it is closed while the button is down
     bool locks = false;     // what is let go stays there for good
+    std::vector<AssemblyStep> steps = {};  // where parts belong: what is let go there is a step done
+    int undo_button = 0;                   // takes back the last step, as `button`; 0: none does
 };
 
 inline constexpr double kStandardGravity = 9.80665;  // [m/s²]

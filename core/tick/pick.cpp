@@ -58,6 +58,11 @@ Pose roundedToSingle(const Pose& X) noexcept {
     return there;
 }
 
+/// `button` from 1; 0 is never down.
+bool isDown(const DeviceReading& reading, int button) noexcept {
+    return button > 0 && (reading.buttons >> (button - 1) & 1u) != 0;
+}
+
 /// What the hand felt and did with another part, or none, tells nothing of what it does now.
 void forgetPast(HandState& hand) noexcept {
     static_cast<Stretch&>(hand) = {};
@@ -87,6 +92,37 @@ void placePart(const HandModel& model, const std::vector<Pose>& X_WP, HandState&
     static_cast<ClosedFormHold&>(hand) = {};
     static_cast<FilteredHold&>(hand) = {};
     if (model.hasSurfaces()) hand.surface->place(X);
+}
+
+/// Of the done steps this one is done no more; it is free to be done again once its part is let go anew.
+void takeBack(const TickModel& model, TickState& state, std::size_t step) noexcept {
+    AssemblyState& assembly = state.assembly;
+    assembly.laid &= ~scene::stepBit(step);
+    if ((assembly.done & scene::stepBit(step)) == 0) return;
+    assembly.done &= ~scene::stepBit(step);
+    const auto end = assembly.sequence.begin() + static_cast<std::ptrdiff_t>(assembly.count--);
+    std::remove(assembly.sequence.begin(), end, static_cast<std::uint8_t>(step));
+    state.locked[model.pick.steps[step].part] = 0;
+}
+
+/// Steps with parts that were let go and lie where they belong are done. Those of parts that a hand took are not.
+void settleSteps(const TickModel& model, TickState& state) noexcept {
+    const std::vector<scene::AssemblyStep>& steps = model.pick.steps;
+    AssemblyState& assembly = state.assembly;
+    for (const Hold& hold : state.holds)
+        for (std::size_t i = 0; i < steps.size(); ++i) {
+            if (steps[i].part == hold.let_go) assembly.laid |= scene::stepBit(i);
+            if (steps[i].part == hold.body) takeBack(model, state, i);
+        }
+    for (const std::size_t i : model.step_order) {
+        const scene::StepSet step = scene::stepBit(i);
+        const bool may_be =
+            (assembly.done & step) == 0 && (assembly.laid & step) != 0 && (steps[i].after & ~assembly.done) == 0;
+        if (!may_be || !scene::isAtGoal(steps[i], state.X_WP)) continue;
+        assembly.done |= step;
+        assembly.sequence[assembly.count++] = static_cast<std::uint8_t>(i);
+        if (steps[i].locks) state.locked[steps[i].part] = 1;
+    }
 }
 
 /// A hand at the end of a tick.
@@ -169,6 +205,7 @@ private:
 void pickAndLetGo(const TickModel& model, TickState& state, std::span<const DeviceReading> readings,
                   std::span<const TickOutput> outputs) noexcept {
     for (Hold& hold : state.holds) hold.let_go = kNoBody;
+    bool changed = false;
     const std::size_t count = model.hands.size();
     for (std::size_t turn = 0; turn < count; ++turn) {
         const std::size_t i = (static_cast<std::size_t>(state.tick) + turn) % count;
@@ -176,17 +213,26 @@ void pickAndLetGo(const TickModel& model, TickState& state, std::span<const Devi
         if (!model.canPick(i) || !frame.input_usable || frame.sample_periods == 0) continue;
         Hold& hold = state.holds[i];
         const bool was_down = hold.down, knows = std::exchange(hold.seen, true);
-        hold.down = (readings[i].buttons >> (model.pick.button - 1) & 1u) != 0;
+        const bool undo_was_down = hold.undo_down;
+        hold.down = isDown(readings[i], model.pick.button);
+        hold.undo_down = isDown(readings[i], model.pick.undo_button);
         if (!knows || !state.hands[i].engaged) continue;
+        if (hold.undo_down && !undo_was_down && state.assembly.count > 0)
+            takeBack(model, state, state.assembly.sequence[state.assembly.count - 1]);
         const bool goes_down = hold.down && !was_down, goes_up = was_down && !hold.down;
         ClosingHand hand(model, state, i);
         if (hold.body != kNoBody) {
-            if (model.pick.on_press ? goes_down : goes_up) hand.open();
+            if (!(model.pick.on_press ? goes_down : goes_up)) continue;
+            hand.open();
+            changed = true;
         } else if (goes_down) {
             const std::size_t nearest = nearestOf(model, state, i, frame.X_WH.p);
-            if (nearest != kNoBody) hand.close(nearest, frame.X_WH);
+            if (nearest == kNoBody) continue;
+            hand.close(nearest, frame.X_WH);
+            changed = true;
         }
     }
+    if (changed && !model.pick.steps.empty()) settleSteps(model, state);
 }
 
 }  // namespace passung::tick

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "core/base/tick_record.h"
+#include "core/scene/assembly.h"
 #include "core/tick/hand_model.h"
 #include "core/tick/step.h"
 
@@ -37,6 +40,12 @@ struct TickState;
 /// too, until somebody closes on it; with `locks` for good. The hand's wrench ends with what its spring held, at once,
 /// and with what an output delay still had of it.
 ///
+/// Assemblies (scene/assembly.h). A step is done when its part rests, let go within the tolerances of its goal, and all
+/// steps before it are done: at the end of the tick in which the last of these came true. A part that is let go there
+/// too early waits. Done, a step that locks keeps its part; of another one the part may be taken out again, which takes
+/// the step back. The undo button of a hand that may pick parts up takes back the step that was done last, when it goes
+/// down: its part is free again and waits to be handled.
+///
 /// Cost. Nothing where the scene names no pick: no call, no memory. Else, when a hand closes, a look at the box of
 /// every pickable part and at the faces of those near; in other ticks a comparison for each hand. What a part takes of
 /// memory (PartState) is its own, whoever holds it; it waits where nobody does.
@@ -45,9 +54,18 @@ struct Hold {
     std::size_t let_go = kNoBody;   // that it let go at the end of the tick before
     bool down = false;              // the button, in the last tick with a good new sample
     bool seen = false;              // there was one
+    bool undo_down = false;         // as `down`, the undo button
     std::size_t partner = kNoHand;  // that holds the same part
     bool follows = false;           // the partner moves it
     static constexpr std::size_t kNoHand = ~std::size_t{0};
+};
+
+/// How far an assembly is.
+struct AssemblyState {
+    scene::StepSet done = 0;
+    scene::StepSet laid = 0;                                 // the part was let go, and neither taken nor undone since
+    std::array<std::uint8_t, scene::kMostSteps> sequence{};  // in which the done ones were done
+    std::size_t count = 0;                                   // of these
 };
 
 /// The end of a tick. rt-safe. @pre model.picks()

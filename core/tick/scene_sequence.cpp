@@ -87,6 +87,16 @@ std::int64_t SceneSequence::tick() const noexcept { return states_[current_].tic
 
 std::uint64_t SceneSequence::hash() const noexcept { return states_[current_].hash; }
 
+PartAtRest SceneSequence::atRest(std::uint64_t turn) const noexcept {
+    const TickModel& model = *turns_[current_].model;
+    const TickState& state = states_[current_];
+    if (!model.picks()) return {};
+    const std::size_t body = model.pickable[turn % model.pickable.size()];
+    for (const Hold& hold : state.holds)
+        if (hold.body == body) return {};
+    return {static_cast<std::int32_t>(body), state.X_WP[body]};
+}
+
 std::vector<PairAccount> SceneSequence::pairs() const {
     std::vector<PairAccount> all;
     for (std::size_t turn = 0; turn < turns_.size(); ++turn) {

@@ -43,6 +43,12 @@ private:
     std::vector<TickModel> models_;
 };
 
+/// A part that can be picked up and that nobody holds.
+struct PartAtRest {
+    std::int32_t part = kNoPart;  // in the order of the scene; kNoPart: none
+    Pose X_WP;
+};
+
 /// One of the scenes that are rendered one after the other in one attempt.
 struct SceneTurn {
     const TickModel* model = nullptr;  // outlives the sequence
@@ -70,6 +76,8 @@ public:
     /// Number of the next tick.
     std::int64_t tick() const noexcept;
     std::uint64_t hash() const noexcept;
+    /// Of the parts that can be picked up the one whose turn it is, if it rests after the newest tick. rt-safe.
+    PartAtRest atRest(std::uint64_t turn) const noexcept;
     /// Of each scene in turn: energy of its obstacles in the order of the scene, and of what none pushed.
     std::vector<PairAccount> pairs() const;
 

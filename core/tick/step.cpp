@@ -236,6 +236,8 @@ void step(const TickModel& model, TickState& state, std::span<const DeviceReadin
         mixOutputs(state.hash, output.frame, output.X_WG);
         if (model.picks()) mix(state.hash, static_cast<std::uint64_t>(output.held));
     }
+    for (TickOutput& output : outputs) output.steps_done = state.assembly.done;
+    if (!model.pick.steps.empty()) mix(state.hash, state.assembly.done);
     if (model.picks()) pickAndLetGo(model, state, readings, outputs);
     ++state.tick;
 }
@@ -273,6 +275,7 @@ TickRecord makeRecord(std::int64_t tick, const DeviceReading& reading, const Tic
     record.nodes_visited = frame.nodes_visited;
     record.hand_energy_J = static_cast<float>(reading.hand_energy_J);
     record.held = output.held;
+    record.steps_done = output.steps_done;
     record.navigation_clutched = frame.clutched ? 1u : 0u;
     record.navigation_scale = static_cast<float>(frame.scale);
     store(record.navigation_offset_m, frame.offset);

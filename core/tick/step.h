@@ -6,6 +6,7 @@
 
 #include "core/base/tick_record.h"
 #include "core/base/types.h"
+#include "core/scene/assembly.h"
 #include "core/tick/stage.h"
 #include "core/tick/tick_frame.h"
 
@@ -20,10 +21,11 @@ struct TickFrame : Parts<Reading, HandSample, MappingRecord, AreaLoad, ContactRe
 
 /// What one tick gives back: exact values, before they are rounded into a record.
 struct TickOutput {
-    Wrench F_D_B;                 // to be commanded
-    TickFrame frame;              // everything else
-    Pose X_WG;                    // proxy of the held part
-    std::int32_t held = kNoPart;  // which part that is, in the order of the scene
+    Wrench F_D_B;                   // to be commanded
+    TickFrame frame;                // everything else
+    Pose X_WG;                      // proxy of the held part
+    std::int32_t held = kNoPart;    // which part that is, in the order of the scene
+    scene::StepSet steps_done = 0;  // of an assembly, as the tick began
 };
 
 /// Who is told after every stage of a tick that it has run for a hand, to measure what it costs. @pre `after` is

@@ -22,6 +22,7 @@ TickModel makeModel(const scene::Scene& scene) {
     TickModel model;
     model.world = makeWorld(scene);
     model.pick = spec.effects.pick;
+    model.step_order = scene::orderOf(model.pick.steps);
     for (std::size_t i = 0; i < spec.parts.size(); ++i)
         if (spec.parts[i].pickable) model.pickable.push_back(i);
     for (std::size_t hand = 0; hand < spec.handCount(); ++hand) {

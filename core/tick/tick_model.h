@@ -22,6 +22,7 @@ struct TickModel {
     std::vector<std::size_t> pickable;
     std::vector<std::vector<HandModel>> carrying, following;
     scene::Pick pick;
+    std::vector<std::size_t> step_order;  // of the assembly: each after those that it is after
 
     bool picks() const noexcept { return !pickable.empty(); }
     bool canPick(std::size_t hand) const noexcept { return picks() && !carrying[hand].empty(); }

@@ -20,6 +20,7 @@ struct TickState {
     std::vector<Hold> holds;         // of each hand
     std::vector<PartState> waiting;  // of each of TickModel::pickable; of one in a hand, what a hand has without a part
     std::vector<std::uint8_t> locked;  // of each part: nobody picks it up any more
+    AssemblyState assembly;
     BalanceMemory balance;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -27,6 +28,27 @@ struct FollowGoal {
     double force = 2.0;        // [N] with which to press
 };
 
+/// Parts are to be picked up and put where they belong, each step after others. Poses as drawn.
+struct AssembleGoal {
+    struct Step {
+        std::int32_t part = 0;   // its place in `parts`
+        std::int32_t into = -1;  // the goal is in the frame of this part, where that part then is; -1: in the world
+        Pose X_IGoal;
+        int folds = 1;  // turned about its z axis by a full turn / folds the part is as before; 0: by any angle
+        double insertion = 0.0;   // [m] that it goes in along the goal's -z; 0: it is only put there
+        std::uint64_t after = 0;  // a bit for each step that has to be done before
+        bool mine = true;         // to be done by this hand
+    };
+    struct Part {
+        Pose X_W;                  // at the start
+        Vec3 grip = Vec3::Zero();  // where the hand takes it, in the part's frame [m]
+    };
+    std::vector<Part> parts;  // of the scene
+    std::vector<Step> steps;  // in the order of DisplayedImage::steps_done
+    std::uint32_t close = 1;  // the buttons that close the hand
+    bool on_press = false;    // a press closes it, the next one opens it; else it is closed while they are down
+};
+
 /// The held part is to stay where it starts.
 struct HoldGoal {};
 
@@ -37,7 +59,7 @@ struct VisibleTask {
     Pose X_WHeldStart;
     Pose X_WTarget;
     double insertion_depth = 0.020;  // [m], > 0
-    std::variant<std::monostate, CompareGoal, PlaceGoal, FollowGoal, HoldGoal> goal = {};
+    std::variant<std::monostate, CompareGoal, PlaceGoal, FollowGoal, HoldGoal, AssembleGoal> goal = {};
     std::optional<std::size_t> target_hand = {};  // that holds the target, which then moves; none: it rests
 };
 

@@ -53,6 +53,19 @@ struct DiscriminationPairTask {
     Judged judged = Judged::Stiffness;
 };
 
+/// How a step of an assembly is asked for; what it is stands in the scene, Effects::pick.steps.
+struct AssemblyStep {
+    std::string name;
+    double insertion = 0.0;  // [m] that the part's origin goes along its goal's -z, guided by what is around, ≥ 0
+    std::size_t hand = 0;    // that is asked to do it; any may
+};
+
+/// Hands pick parts up and put each where it belongs; success once all steps are done.
+struct AssemblyTask {
+    std::vector<AssemblyStep> steps;  // in the order of the scene's
+    bool hints = true;                // the goals of the steps that may be done next are drawn
+};
+
 /// What a trial asks for; `form` says the type of the trial.
 struct Task {
     std::string target;           // name of the part that it is about; empty for free_placement
