@@ -20,7 +20,7 @@ public:
     }
     template <std::integral Number>
     void field(const char* name, Number recorded, Number replayed) {
-        if (recorded != replayed) report(name, recorded, replayed);
+        if (recorded != replayed) report(name, static_cast<double>(recorded), static_cast<double>(replayed));
     }
     /// One NaN is as another: a recording from before the value was recorded has its reader's.
     void known(const char* name, float recorded, float replayed) {

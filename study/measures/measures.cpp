@@ -373,7 +373,8 @@ std::vector<Measure> commonMeasures() {
 const std::vector<Measure>& measures() {
     static const std::vector<Measure> all = [] {
         std::vector<Measure> list = commonMeasures();
-        for (const auto& more : {passageMeasures(), contourMeasures(), placementMeasures(), pairMeasures()})
+        for (const auto& more :
+             {passageMeasures(), contourMeasures(), placementMeasures(), pairMeasures(), assemblyMeasures()})
             list.insert(list.end(), more.begin(), more.end());
         return list;
     }();

@@ -34,6 +34,28 @@ struct PairFacts {
     int comparison_interval = 1;  // 1 or 2
 };
 
+/// What became of a step of an assembly. Times in haptic periods after the trial's start.
+struct StepResult {
+    std::optional<std::int64_t> picked = {};  // its part was taken for the first time
+    std::optional<std::int64_t> done = {};    // and has stayed so; none: it was not done at the end
+    std::int64_t place = 0;                   // among the steps done at the end, from 1 in time; 0: it was not
+    std::int64_t picks = 0;                   // the part was taken: into a hand from none
+    std::int64_t drops = 0;                   // it was let go elsewhere than at its goal
+    std::int64_t order_errors = 0;            // it was let go at its goal before steps that come before
+    std::int64_t undos = 0;                   // it was done, and was not any more
+    std::uint32_t hands = 0;                  // that held the part: bit 0 the first hand
+    std::int64_t held_periods = 0;            // that it was in a hand
+    double path = 0.0;                        // of the part's origin in the hands [m]
+    double peak_force = 0.0;                  // on a hand that held it [N]
+    // Of the part at the end, from its goal
+    double position_error = 0.0;  // [m]
+    double angle_error = 0.0;     // [rad], turns that make no difference left out
+    friend bool operator==(const StepResult&, const StepResult&) = default;
+};
+struct AssemblyFacts {
+    std::vector<StepResult> steps;
+};
+
 /// What became of a stimulus of a secondary task, or of a press without one.
 enum class DetectionResult { Hit, Miss, FalseAlarm, NotScored };
 const char* detectionResultName(DetectionResult result);  // as stored
@@ -67,7 +89,8 @@ struct TrialContext {
     double leave_radius = 0.020;      // [m]
     double engagement_depth = 0.001;  // [m]
     double clearance = 0.0;           // [m] radial, of the held peg in the target's bore
-    std::variant<std::monostate, PassageFacts, ContourFacts, PlacementFacts, PairFacts> form;  // first: peg in hole
+    std::variant<std::monostate, PassageFacts, ContourFacts, PlacementFacts, PairFacts, AssemblyFacts>
+        form;             // first: peg in hole
     bool watched = true;  // false: real parts, which no device feels; only times and outcome are known
     std::optional<std::vector<Detection>> detections = {};  // of the secondary task, where there is one
     std::vector<TickOverlap> overlaps = {};                 // of the ticks that were judged; none: not measured

@@ -11,5 +11,6 @@ std::vector<Measure> passageMeasures();
 std::vector<Measure> contourMeasures();
 std::vector<Measure> placementMeasures();
 std::vector<Measure> pairMeasures();
+std::vector<Measure> assemblyMeasures();
 
 }  // namespace passung::measures

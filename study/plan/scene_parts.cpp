@@ -16,6 +16,11 @@ const scene::PartSpec* heldPart(const scene::SceneSpec& scene) {
     return findPart(scene, [](const scene::PartSpec& part) { return part.held && part.hand == 0; });
 }
 
+Pose startPose(const scene::SceneSpec& scene, std::size_t hand) {
+    const std::size_t held = scene.heldBy(hand);
+    return held < scene.parts.size() ? scene.parts[held].X_WP : scene.hand(hand).start_gate.X_WH;
+}
+
 const scene::PartSpec* partNamed(const scene::SceneSpec& scene, std::string_view name) {
     return findPart(scene, [name](const scene::PartSpec& part) { return part.name == name; });
 }

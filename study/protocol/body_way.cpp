@@ -250,6 +250,7 @@ private:
     void checkRoom(const plan::PegInHoleTask&) {}
     void checkRoom(const plan::FreePlacementTask&) {}
     void checkRoom(const plan::DiscriminationPairTask&) {}
+    void checkRoom(const plan::AssemblyTask&) {}
     void checkRoom(const plan::ContourFollowingTask& contour) {
         if (target_ == nullptr) return;
         const Line line = piecesOf(contour);
@@ -280,6 +281,7 @@ private:
     }
 
     void checkWay(const plan::DiscriminationPairTask&) {}
+    void checkWay(const plan::AssemblyTask&) {}
     void checkWay(const plan::PegInHoleTask& peg) {
         if (target_ != nullptr)
             way("target", {target_->X_WP * Vec3(0, 0, -peg.success_fraction * peg.insertion_depth)}, 0.0, 1.0);
@@ -381,6 +383,7 @@ void checkBody(const StudyTables& tables, const plan::Condition& condition, cons
     const scene::ContactSpec& contact = condition.scene.contact;
     const bool stops = contact.method != scene::ContactMethod::Penalty && condition.scene.display_wrench;
     if (!stops || condition.timed_by != plan::TimedBy::Program) return;
+    if (std::holds_alternative<plan::AssemblyTask>(condition.task.form)) return;
     BodyCheck(tables, condition, device, geometries, errors).run();
 }
 

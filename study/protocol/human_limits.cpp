@@ -53,6 +53,7 @@ public:
 private:
     void check(const plan::NarrowPassageTask&) {}
     void check(const plan::ContourFollowingTask&) {}
+    void check(const plan::AssemblyTask&) {}
     void check(const plan::PegInHoleTask& peg) {
         if (condition_.timed_by != plan::TimedBy::Program || !(peg.hold > 0.0)) return;
         if (peg.max_speed < kStillest)

@@ -342,9 +342,6 @@ private:
         if (!names_device)
             errors_.push_back(errorAt(device != nullptr ? device->place : tables.scene.place, "device.preset", "",
                                       "required in a study"));
-        if (content.scene.effects.picks())
-            errors_.push_back(errorAt(tables.scene.find("effects")->find("pick")->place, "effects.pick", "",
-                                      "is not known to any task: no type judges parts that are picked up yet"));
         condition.scene = std::move(content.scene);
         condition.accuracy_budget = content.accuracy_budget;
         condition.accuracy_line = content.accuracy_place.line;
@@ -356,6 +353,10 @@ private:
                               if (root_.has("task")) condition.task = readTask(tables, &condition.scene, errors_);
                           });
         if (!content.parts_sound && root_.has("task")) readTask(tables, nullptr, errors_);
+        if (task && condition.scene.effects.picks() && !std::holds_alternative<plan::AssemblyTask>(condition.task.form))
+            errors_.push_back(
+                errorAt(tables.scene.find("effects")->find("pick")->place, "effects.pick", "",
+                        "is for task.type = \"assembly\": no other type judges parts that are picked up"));
         tasks_sound_ = tasks_sound_ && task && root_.has("task");
         readConditionExtras(tables, condition, errors_);
         const bool pair = std::holds_alternative<plan::DiscriminationPairTask>(condition.task.form);

@@ -122,6 +122,8 @@ private:
         way((placement.X_WGoal.p - held_.X_WP.p).norm());
     }
 
+    void check(const plan::AssemblyTask&) {}
+
     /// Some place of the target comes within reach of the held part.
     void check(const plan::DiscriminationPairTask&) {
         const PartSurface* held = geometries_.of(held_);
@@ -302,6 +304,7 @@ private:
 
 void checkReach(const StudyTables& tables, const plan::Condition& condition, const DeviceDescription& device,
                 PartGeometries& geometries, Errors& errors, std::vector<std::string>& warnings) {
+    if (std::holds_alternative<plan::AssemblyTask>(condition.task.form)) return;
     ReachCheck(tables, condition, device, geometries, errors, warnings).run();
 }
 

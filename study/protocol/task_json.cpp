@@ -42,6 +42,16 @@ struct FormJson {
             .text("question", task.question)
             .text("judged", task.judged == plan::Judged::Stiffness ? "stiffness" : "roughness");
     }
+    void operator()(const plan::AssemblyTask& task) const {
+        std::vector<std::string> steps;
+        for (const plan::AssemblyStep& step : task.steps)
+            steps.push_back(JsonObject()
+                                .text("name", step.name)
+                                .number("insertion_m", step.insertion)
+                                .integer("hand", static_cast<std::int64_t>(step.hand))
+                                .str());
+        json.json("steps", jsonList(steps)).boolean("hints", task.hints);
+    }
 };
 
 }  // namespace

@@ -15,12 +15,15 @@ constexpr std::array<std::string_view, 2> kFreePlacement{"position_error_m", "an
 constexpr std::array<std::string_view, 4> kDiscriminationPair{"comparison_interval", "answer", "correct",
                                                               "response_time_s"};
 
+constexpr std::array<std::string_view, 5> kAssembly{"steps_done", "order_errors", "drops", "regrasps", "undos"};
+
 constexpr std::array kTypes{
     TrialType{"peg_in_hole", "task.peg_in_hole", kPegInHole},
     TrialType{"narrow_passage", "task.narrow_passage", kNarrowPassage},
     TrialType{"contour_following", "task.contour_following", kContourFollowing},
     TrialType{"free_placement", "task.free_placement", kFreePlacement},
     TrialType{"discrimination_pair", "task.discrimination_pair", kDiscriminationPair},
+    TrialType{"assembly", "task.assembly", kAssembly},
 };
 static_assert(kTypes.size() == std::variant_size_v<decltype(plan::Task::form)>);
 

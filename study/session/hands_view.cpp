@@ -57,4 +57,11 @@ TickRecord HandsView::of(const TickRecord& record, std::span<const std::vector<T
     return seen;
 }
 
+std::array<const TickRecord*, scene::kMostHands> HandsView::all(const TickRecord& record,
+                                                                std::span<const std::vector<TickRecord>> others) const {
+    std::array<const TickRecord*, scene::kMostHands> hands{&record};
+    for (std::size_t i = 0; i < other_hands_; ++i) hands[i + 1] = recordAt(others[i], record.tick);
+    return hands;
+}
+
 }  // namespace passung::session

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -29,6 +30,11 @@ public:
     /// What the first hand's `record` is judged as. `others`: what was recorded of each other hand, ascending, that
     /// tick included; of a tick that is missing there the one before it counts.
     TickRecord of(const TickRecord& record, std::span<const std::vector<TickRecord>> others) const;
+
+    /// What was recorded of each hand at that tick, where it is looked at beside; else of the first alone.
+    /// `others`: as of().
+    std::array<const TickRecord*, scene::kMostHands> all(const TickRecord& record,
+                                                         std::span<const std::vector<TickRecord>> others) const;
 
 private:
     std::size_t other_hands_;

@@ -28,7 +28,7 @@ Result<Judgement> judgeAgain(const plan::Condition& condition, std::span<const s
     const auto others = hands.subspan(1);
     const auto X_WT = targetPose(condition);
     if (!X_WT) return X_WT.errors();
-    TrialCourse course(condition.task, *X_WT, stored.seed, condition.timed_by);
+    TrialCourse course(condition, *X_WT, stored.seed);
     std::optional<measures::DetectionTask> secondary;
     if (condition.secondary.any()) secondary.emplace(detectionSettings(condition.secondary), stored.seed);
     measures::PeriodClock clock;
@@ -40,7 +40,7 @@ Result<Judgement> judgeAgain(const plan::Condition& condition, std::span<const s
         TrialCourse next = course;
         sayAgain(next, stored, time);
         const TickRecord judged = view.of(record, others);
-        next.follow(judged, events);
+        next.follow(judged, view.all(record, others), events);
         // Whoever aborts an attempt does it before the tick that would have followed.
         const bool from_outside =
             time >= stored.end_time && stored.outcome == Outcome::Aborted && next.state() != TrialState::Aborted;

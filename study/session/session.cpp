@@ -33,6 +33,16 @@ std::string pictureFault(const Presentation& given, const plan::View& view, doub
     return {};
 }
 
+/// @pre the condition's trial is an assembly
+std::string stepJson(const plan::Condition& condition, const measures::StepChange& change) {
+    const auto& steps = std::get<plan::AssemblyTask>(condition.task.form).steps;
+    JsonObject json;
+    json.text("step", steps[change.step].name);
+    if (change.what == measures::StepChange::What::State) json.text("state", measures::stepStateName(change.state));
+    if (change.hand > 0) json.text("hand", condition.scene.hand(change.hand).name);
+    return json.str();
+}
+
 }  // namespace
 
 std::uint64_t attemptSeed(const SessionSetup& setup, const design::PlannedTrial& trial, int attempt_no) {
@@ -151,8 +161,7 @@ void Session::beginTrial() {
     const auto id = sink_.startAttempt(start);
     if (!id) return fail("start attempt", id.errors());
     ++past_[agenda_.next()].attempts;
-    InTrial attempt{*id, &condition, TrialCourse(condition.task, *X_WT, start.seed, condition.timed_by),
-                    HandsView(condition)};
+    InTrial attempt{*id, &condition, TrialCourse(condition, *X_WT, start.seed), HandsView(condition)};
     attempt.others.resize(attempt.view.otherHands());
     if (condition.secondary.any()) attempt.secondary.emplace(detectionSettings(condition.secondary), start.seed);
     if (setup_.timer != nullptr && condition.timed_by == plan::TimedBy::Experimenter)
@@ -216,7 +225,8 @@ void Session::judge(std::span<const TickRecord> records) {
         attempt().next_tick = record.tick + 1;
         if (attempt().secondary) attempt().secondary->follow(record);
         if (attempt().course.ended()) continue;
-        attempt().course.follow(attempt().view.of(record, attempt().others), events);
+        attempt().course.follow(attempt().view.of(record, attempt().others),
+                                attempt().view.all(record, attempt().others), events);
         if (attempt().course.started()) attempt().records.push_back(record);
     }
     appendEvents(events);
@@ -342,6 +352,7 @@ void Session::appendEvents(const std::vector<TrialEvent>& events) {
         event.event = happened.name;
         if (event.event == "aborted")
             event.payload_json = JsonObject().text("reason", attempt().course.abortReason()).str();
+        if (happened.step) event.payload_json = stepJson(*attempt().condition, *happened.step);
         sink_.appendEvent(event);
     }
 }

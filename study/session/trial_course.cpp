@@ -27,12 +27,12 @@ const char* eventName(TrialState state) {
 
 using plan::TimedBy;
 
-TrialCourse::TrialCourse(const plan::Task& task, const Pose& X_WT, std::uint64_t attempt_seed, TimedBy timed_by)
+TrialCourse::TrialCourse(const plan::Condition& condition, const Pose& X_WT, std::uint64_t attempt_seed)
     : X_WT_(X_WT),
-      leave_radius_(task.leave_radius),
-      rule_(task, X_WT, attempt_seed),
-      timeout_(std::llround(task.timeout / kTickSeconds)),
-      timed_by_(timed_by) {}
+      leave_radius_(condition.task.leave_radius),
+      rule_(condition.task, condition.scene, X_WT, attempt_seed),
+      timeout_(std::llround(condition.task.timeout / kTickSeconds)),
+      timed_by_(condition.timed_by) {}
 
 bool TrialCourse::awaitsExperimenter() const {
     return timed_by_ == TimedBy::Experimenter && state_ == TrialState::AwaitingStart && !begin_asked_;
@@ -43,28 +43,31 @@ bool TrialCourse::endsByExperimenter() const {
            !conclusion_;
 }
 
-void TrialCourse::follow(const TickRecord& record, std::vector<TrialEvent>& events) {
+void TrialCourse::follow(const TickRecord& record, std::span<const TickRecord* const> hands,
+                         std::vector<TrialEvent>& events) {
     PASSUNG_ASSERT(!ended());
     clock_.at(record);
     if (record.status & kNonFiniteLatched) return abort(record.tick, "a computed wrench was not finite", events);
     if (state_ == TrialState::AwaitingStart) awaitStart(record, events);
+    if (state_ == TrialState::AwaitingStart) rule_.await(hands, clock_.periods());
     if (state_ != TrialState::Running) return;
 
     const bool over = clock_.periods() - *start_time_ >= timeout_;
-    if (timed_by_ == TimedBy::Program) return watch(record, over, events);
+    if (timed_by_ == TimedBy::Program) return watch(record, hands, over, events);
     std::optional<TrialState> verdict;
     if (timed_by_ == TimedBy::Experimenter && *start_tick_ < record.tick) verdict = conclusion_;
     if (!verdict && over) verdict = timed_by_ == TimedBy::Clock ? TrialState::Succeeded : TrialState::TimedOut;
     if (verdict) end(*verdict, record.tick, eventName(*verdict), events);
 }
 
-void TrialCourse::watch(const TickRecord& record, bool over, std::vector<TrialEvent>& events) {
+void TrialCourse::watch(const TickRecord& record, std::span<const TickRecord* const> hands, bool over,
+                        std::vector<TrialEvent>& events) {
     if (!touched_ && measures::isContact(record)) {
         touched_ = true;
         events.push_back({clock_.periods(), "first_contact"});
     }
     if (record.status & kInputRejected) ++rejected_ticks_;
-    if (const auto verdict = rule_.follow(record, clock_.periods(), events)) {
+    if (const auto verdict = rule_.follow(record, hands, clock_.periods(), events)) {
         if (*verdict == TrialState::Aborted) return abort(record.tick, "start pose not reached", events);
         return end(*verdict, record.tick, eventName(*verdict), events);
     }

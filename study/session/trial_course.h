@@ -23,8 +23,8 @@ class TrialCourse {
 public:
     static constexpr std::int64_t kStartLimit = 60'000;  // [periods]
 
-    TrialCourse(const plan::Task& task, const Pose& X_WT, std::uint64_t attempt_seed,
-                plan::TimedBy timed_by = plan::TimedBy::Program);
+    /// Of a trial in `condition`. `X_WT`, `attempt_seed`: as for TrialRule.
+    TrialCourse(const plan::Condition& condition, const Pose& X_WT, std::uint64_t attempt_seed);
 
     /// The experimenter starts the clock. @pre awaitsExperimenter()
     void begin() { begin_asked_ = true; }
@@ -33,8 +33,13 @@ public:
     bool awaitsExperimenter() const;
     bool endsByExperimenter() const;
 
-    /// Takes the next record and appends what happened in it. @pre not ended()
-    void follow(const TickRecord& record, std::vector<TrialEvent>& events);
+    /// Takes the next record and appends what happened in it. `hands`: as for TrialRule. @pre not ended()
+    void follow(const TickRecord& record, std::span<const TickRecord* const> hands, std::vector<TrialEvent>& events);
+    /// The same of a scene with one hand.
+    void follow(const TickRecord& record, std::vector<TrialEvent>& events) {
+        const TickRecord* const alone = &record;
+        follow(record, std::span(&alone, 1), events);
+    }
 
     /// Ends the attempt from outside, at `tick`. @pre not ended()
     void abort(std::int64_t tick, std::string reason, std::vector<TrialEvent>& events);
@@ -64,7 +69,8 @@ public:
 private:
     void awaitStart(const TickRecord& record, std::vector<TrialEvent>& events);
     void start(const TickRecord& record, std::vector<TrialEvent>& events);
-    void watch(const TickRecord& record, bool over, std::vector<TrialEvent>& events);
+    void watch(const TickRecord& record, std::span<const TickRecord* const> hands, bool over,
+               std::vector<TrialEvent>& events);
     void end(TrialState state, std::int64_t tick, const char* event, std::vector<TrialEvent>& events);
 
     Pose X_WT_;

@@ -14,10 +14,12 @@ constexpr std::int64_t kWayBackLimit = 60'000;  // [periods]
 
 }  // namespace
 
-TrialRule::TrialRule(const plan::Task& task, const Pose& X_WT, std::uint64_t attempt_seed)
-    : X_WT_(X_WT), form_(makeRule(task, X_WT, attempt_seed)) {}
+TrialRule::TrialRule(const plan::Task& task, const scene::SceneSpec& scene, const Pose& X_WT,
+                     std::uint64_t attempt_seed)
+    : X_WT_(X_WT), form_(makeRule(task, scene, X_WT, attempt_seed)) {}
 
-TrialRule::AnyRule TrialRule::makeRule(const plan::Task& task, const Pose& X_WT, std::uint64_t attempt_seed) {
+TrialRule::AnyRule TrialRule::makeRule(const plan::Task& task, const scene::SceneSpec& scene, const Pose& X_WT,
+                                       std::uint64_t attempt_seed) {
     if (const auto* peg = std::get_if<plan::PegInHoleTask>(&task.form)) return Insertion{*peg, SuccessRule(*peg, X_WT)};
     if (const auto* passage = std::get_if<plan::NarrowPassageTask>(&task.form)) {
         const measures::PassageFacts facts{passage->length, passage->width};
@@ -28,13 +30,27 @@ TrialRule::AnyRule TrialRule::makeRule(const plan::Task& task, const Pose& X_WT,
         return Contour{facts, contour->coverage, {facts, X_WT}};
     }
     if (const auto* placement = std::get_if<plan::FreePlacementTask>(&task.form)) return Placement{*placement, {}};
+    if (std::holds_alternative<plan::AssemblyTask>(task.form))
+        return Assembly{measures::AssemblyWatch(scene.effects.pick.steps, scene)};
     const auto& pair = std::get<plan::DiscriminationPairTask>(task.form);
     return Pair{std::llround(pair.answer / kTickSeconds), comparisonInterval(attempt_seed), {}};
 }
 
-std::optional<TrialState> TrialRule::follow(const TickRecord& record, std::int64_t time,
-                                            std::vector<TrialEvent>& events) {
-    return std::visit([&](auto& form) { return judge(form, record, time, events); }, form_);
+std::optional<TrialState> TrialRule::follow(const TickRecord& record, std::span<const TickRecord* const> hands,
+                                            std::int64_t time, std::vector<TrialEvent>& events) {
+    return std::visit(
+        [&](auto& form) -> Verdict {
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(form)>, Assembly>)
+                return judge(form, hands, time, events);
+            else
+                return judge(form, record, time, events);
+        },
+        form_);
+}
+
+void TrialRule::await(std::span<const TickRecord* const> hands, std::int64_t time) {
+    std::vector<measures::StepChange> unasked;
+    if (auto* assembly = std::get_if<Assembly>(&form_)) assembly->watch.follow(hands, time, unasked);
 }
 
 TrialRule::Verdict TrialRule::judge(Insertion& form, const TickRecord& record, std::int64_t time,
@@ -86,6 +102,22 @@ TrialRule::Verdict TrialRule::judge(Pair& form, const TickRecord& record, std::i
     return std::nullopt;
 }
 
+TrialRule::Verdict TrialRule::judge(Assembly& form, std::span<const TickRecord* const> hands, std::int64_t time,
+                                    std::vector<TrialEvent>& events) {
+    using What = measures::StepChange::What;
+    if (!form.start) form.start = time;
+    std::vector<measures::StepChange> changes;
+    form.watch.follow(hands, time, changes);
+    for (const measures::StepChange& change : changes) {
+        const char* name = change.what == What::State        ? "step_state"
+                           : change.what == What::LetGo      ? "part_let_go"
+                           : change.what == What::OrderError ? "order_error"
+                                                             : "step_undone";
+        events.push_back({time, name, change});
+    }
+    return form.watch.allDone() ? Verdict(TrialState::Succeeded) : std::nullopt;
+}
+
 void TrialRule::describe(measures::TrialContext& context) const {
     if (const auto* insertion = std::get_if<Insertion>(&form_)) {
         context.engagement_depth = insertion->task.engagement_depth;
@@ -96,6 +128,8 @@ void TrialRule::describe(measures::TrialContext& context) const {
         context.form = contour->facts;
     } else if (const auto* placement = std::get_if<Placement>(&form_)) {
         context.form = measures::PlacementFacts{placement->task.round};
+    } else if (const auto* assembly = std::get_if<Assembly>(&form_)) {
+        context.form = measures::AssemblyFacts{assembly->watch.results(assembly->start.value_or(0))};
     } else {
         context.form = measures::PairFacts{std::get<Pair>(form_).comparison_interval};
         context.leave_radius = std::numeric_limits<double>::infinity();  // nothing is carried anywhere

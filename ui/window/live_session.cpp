@@ -156,7 +156,7 @@ std::unique_ptr<loop::HapticDevice> LiveSession::device(const simulated::DeviceP
     if (options_.hand != LiveHand::Mouse) return nullptr;
     const scene::Registration& r = condition.scene.registration;
     const simulated::HandRegistration registration{r.X_WB, r.scale, r.X_DH};
-    const Pose start = plan::heldPart(condition.scene)->X_WP;
+    const Pose start = plan::startPose(condition.scene, 0);
     auto device = std::make_unique<mouse::MouseDevice>(preset, registration, start, pointer_);
     reach_.store(device->reach() * r.scale);
     swing_.store(device->swing());

@@ -34,7 +34,7 @@ public:
           models_(scene_),
           ring_(16),
           cycle_(models_[0], device_, ring_, condition.shown == plan::ShownPose::Proxy),
-          rule_(condition.task, X_WT, kSeed) {}
+          rule_(condition.task, condition.scene, X_WT, kSeed) {}
 
     /// False: the trial is over.
     bool step() {
@@ -47,7 +47,9 @@ public:
         X_WH.push_back(registration_.partFromHandle(readingOf(tick)));
         touched += tick.contacts > 0 ? 1 : 0;
         std::vector<session::TrialEvent> events;
-        return !rule_.follow(tick, tick.tick, events) && X_WH.size() < static_cast<std::size_t>(HandPath::kMostTicks);
+        const TickRecord* const alone = &tick;
+        return !rule_.follow(tick, std::span(&alone, 1), tick.tick, events) &&
+               X_WH.size() < static_cast<std::size_t>(HandPath::kMostTicks);
     }
 
     std::vector<Pose> X_WH;
@@ -85,6 +87,10 @@ Result<HandPath> handPath(const plan::Condition& condition, scene::PartCache& pa
         return Error{.message = "its trials are not done with the device", .key = "condition", .value = condition.name};
     if (condition.scene.handCount() > 1)
         return Error{.message = "has more than one hand: what accuracy costs is measured with one",
+                     .key = "condition",
+                     .value = condition.name};
+    if (condition.scene.effects.picks())
+        return Error{.message = "picks parts up: what accuracy costs is measured with one held part",
                      .key = "condition",
                      .value = condition.name};
     if (simulated::findPreset(condition.device) == nullptr)

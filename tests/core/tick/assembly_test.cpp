@@ -9,6 +9,7 @@
 #include "core/base/random.h"
 #include "core/tick/step.h"
 #include "core/tick/tick_state.h"
+#include "tests/support/contact_way.h"
 #include "tests/support/scenes.h"
 
 // Steps of an assembly: when they are done, and what is taken back.

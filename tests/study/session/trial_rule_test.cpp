@@ -17,7 +17,9 @@ struct Followed {
 
 template <class MakeRecord>
 Followed follow(const plan::Task& task, std::int64_t ticks, MakeRecord at, std::uint64_t seed = 1) {
-    TrialCourse course(task, Pose{}, seed);
+    plan::Condition condition;
+    condition.task = task;
+    TrialCourse course(condition, Pose{}, seed);
     std::vector<TrialEvent> events;
     for (std::int64_t tick = 0; tick < ticks && !course.ended(); ++tick) {
         TickRecord record;
@@ -94,7 +96,7 @@ TEST(TrialRule, APairsIntervalsFollowTheAttemptsSeed) {
         EXPECT_EQ(scenes[1].periods, 100);
         first += comparison == 0 ? 1 : 0;
         measures::TrialContext context;
-        TrialRule(condition.task, Pose{}, seed).describe(context);
+        TrialRule(condition.task, condition.scene, Pose{}, seed).describe(context);
         EXPECT_EQ(std::get<measures::PairFacts>(context.form).comparison_interval, comparisonInterval(seed));
     }
     EXPECT_NEAR(first, 500, 80);  // five standard deviations of a fair coin
