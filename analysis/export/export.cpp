@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "analysis/export/analysis_table.h"
+#include "analysis/export/assembly_step_table.h"
 #include "analysis/export/cell_tables.h"
 #include "analysis/export/codebook.h"
 #include "analysis/export/contact_energy_table.h"
@@ -43,6 +44,7 @@ std::vector<Table> makeTables(const StudyData& study) {
     tables.push_back(makeTiming(study));
     tables.push_back(makeContactEnergy(study));
     tables.push_back(makeExactOverlap(study));
+    if (Table steps = makeAssemblySteps(study); !steps.rows.empty()) tables.push_back(std::move(steps));
     if (Table shown = makePresentation(study); !shown.rows.empty()) tables.push_back(std::move(shown));
     if (!study.detections.empty()) tables.push_back(makeSecondary(study));
     if (!study.staircase_steps.empty()) {
@@ -196,7 +198,7 @@ Result<ExportReport> exportAll(const store::StoreReader& reader, const std::stri
         tables.push_back({kSamplesPattern,
                           "One file per attempt, one row per recorded tick (1 kHz): "
                           "`<participant>_<session>_t<trial_index>_a<attempt_no>.csv.gz`.",
-                          sampleColumns(study->navigation),
+                          sampleColumns(study->extras),
                           {}});
     }
     for (const ExportedFile& file : namedFiles(*study)) writer.write(file.path, file.bytes);

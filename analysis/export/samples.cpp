@@ -76,11 +76,12 @@ AddCell adderOf(const store::Channel& channel) {
     if (channel.type == "float64") return addRecorded<double>;
     if (channel.type == "float32") return addRecorded<float>;
     if (channel.type == "uint32") return addRecorded<std::uint32_t>;
+    if (channel.type == "int32") return addRecorded<std::int32_t>;
     return addRecorded<std::int64_t>;
 }
 
 SampleColumn channelColumn(const store::Channel& channel) {
-    const bool integer = channel.type == "uint32" || channel.type == "int64";
+    const bool integer = channel.type.find("int") != std::string::npos;
     return {{channel.name,
              channel.label,
              channel.unit == "1" ? "" : channel.unit,
@@ -97,7 +98,14 @@ void addCommand(NumberText& row, bool has, double command) {
     row.add(has ? command : std::numeric_limits<double>::quiet_NaN());
 }
 
-std::vector<SampleColumn> makeSampleColumns(bool navigation) {
+/// Which files have its columns.
+const char* whereExtra(store::Extra extra) {
+    return extra == store::Extra::Navigation
+               ? "only in files of conditions with effects.clutch, position_scale or drift"
+               : "only in files of conditions with effects.pick";
+}
+
+std::vector<SampleColumn> makeSampleColumns(std::span<const store::Extra> extras) {
     std::vector<SampleColumn> columns = {
         {{"tick", "Number of the tick in the attempt, from 0", "", "integer", "", 1, {}},
          [](NumberText& row, const Sample& sample, std::size_t) { row.add(sample.record.tick); }},
@@ -145,19 +153,19 @@ std::vector<SampleColumn> makeSampleColumns(bool navigation) {
         "1 from onset_s to before off_s of a row of secondary.csv", [](NumberText& row, const Sample& s, std::size_t) {
             addCommand(row, s.commanded.secondary, s.lit ? 1.0 : 0.0);
         });
-    if (!navigation) return columns;
-    for (const store::Channel& channel : store::navigationChannels()) {
-        columns.push_back(channelColumn(channel));
-        columns.back().column.formula = "only in files of conditions with effects.clutch, position_scale or drift";
-    }
+    for (const store::Extra extra : extras)
+        for (const store::Channel& channel : store::extraChannels(extra)) {
+            columns.push_back(channelColumn(channel));
+            columns.back().column.formula = whereExtra(extra);
+        }
     return columns;
 }
 
 }  // namespace
 
-std::vector<Column> sampleColumns(bool navigation) {
+std::vector<Column> sampleColumns(std::span<const store::Extra> extras) {
     std::vector<Column> columns;
-    for (const SampleColumn& column : makeSampleColumns(navigation)) columns.push_back(column.column);
+    for (const SampleColumn& column : makeSampleColumns(extras)) columns.push_back(column.column);
     return columns;
 }
 
@@ -190,13 +198,15 @@ SampleSignals sampleSignals(const StudyData& study, const store::AttemptRow& att
 
 std::string samplesCsv(std::span<const TickRecord> records, const SampleSignals& commanded) {
     constexpr std::size_t kTypicalRow = 400;
-    const bool navigation = store::haveNavigation(records);
-    std::string text = toCsv(Table{{}, {}, sampleColumns(navigation), {}});
+    std::vector<store::Extra> extras;
+    for (const store::Extra extra : store::kExtras)
+        if (store::haveExtra(extra, records)) extras.push_back(extra);
+    std::string text = toCsv(Table{{}, {}, sampleColumns(extras), {}});
     text.reserve(text.size() + records.size() * kTypicalRow);
     NumberText row(text);
     measures::PeriodClock clock;
     measures::CueSignals signals(commanded.cues);
-    const std::vector<SampleColumn> columns = makeSampleColumns(navigation);
+    const std::vector<SampleColumn> columns = makeSampleColumns(extras);
     std::size_t shown = 0;  // stimuli that are over
     for (const TickRecord& record : records) {
         const std::int64_t period = clock.at(record);

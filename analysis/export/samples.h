@@ -12,12 +12,14 @@
 #include "core/base/tick_record.h"
 #include "study/measures/cues.h"
 #include "study/store/rows/rows.h"
+#include "study/store/samples/sample_codec.h"
 
 namespace passung::exporter {
 
 /// Columns of every file in samples/: tick, t_s, the recorded channels, and the commands of the cues that follow from
-/// them; last those of `navigation`, only in files of attempts whose scene has it. Computing times are not among them.
-std::vector<Column> sampleColumns(bool navigation);
+/// them; last those of `extras`, only in files of attempts whose scene calls for them. Computing times are not among
+/// them.
+std::vector<Column> sampleColumns(std::span<const store::Extra> extras);
 
 /// `samples/<participant>_<session>_t<trial>_a<attempt>.csv.gz`; of another hand than the first, `hand` from 0, with
 /// `_` and its name before the dot.

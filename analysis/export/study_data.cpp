@@ -75,9 +75,11 @@ Result<StudyData> readStudy(const store::StoreReader& reader) {
     StudyData study;
     study.damages = reader.damages();
     Errors errors;
-    const auto navigation = reader.hasNavigation();
-    if (!navigation) errors.insert(errors.end(), navigation.errors().begin(), navigation.errors().end());
-    study.navigation = navigation && *navigation;
+    const auto extras = reader.extras();
+    if (extras)
+        study.extras = *extras;
+    else
+        errors.insert(errors.end(), extras.errors().begin(), extras.errors().end());
     std::vector<store::FactorRow> factors;
     take(reader.protocols(), study.protocols, errors);
     take(reader.factors(), factors, errors);

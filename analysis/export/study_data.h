@@ -41,7 +41,7 @@ struct StudyData {
     std::vector<store::NamedFileRow> files;
     std::vector<store::AccuracyRow> accuracy;  // of protocols with contact.accuracy = "auto"
     std::vector<store::DamageRow> damages;     // for which rows are missing
-    bool navigation = false;                   // some attempt's ticks tell of it
+    std::vector<store::Extra> extras;          // that some attempt's ticks have beside
 };
 
 Result<StudyData> readStudy(const store::StoreReader& reader);

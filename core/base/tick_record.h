@@ -79,7 +79,7 @@ struct TickRecord {
     // An output: no point of the held part at X_WG is nearer to an obstacle than this, ≥ 0 [m]. NaN: the contact's
     // geometry proves none, as sampled points and fields.
     float proxy_gap_m = std::numeric_limits<float>::quiet_NaN();
-    // An output: which part the hand holds, in the order of the scene; kNoPart, or kPartNotTold of a recording without.
+    // An output of scenes whose parts are picked up: which part the hand holds, in the order of the scene, or kNoPart.
     std::int32_t held = kPartNotTold;
     // An output of assemblies, one for all hands: the steps that were done as the tick began (core/scene/assembly.h).
     std::uint64_t steps_done = 0;

@@ -232,11 +232,14 @@ void step(const TickModel& model, TickState& state, std::span<const DeviceReadin
         share(state.hands[hand], outputs[hand].frame, state.hands[partner]);
         takeTurn(*hands[partner].model, state, state.hands[partner], next[partner], outputs[partner], watch);
     }
-    for (const TickOutput& output : outputs) {
+    for (TickOutput& output : outputs) {
+        output.steps_done = state.assembly.done;
         mixOutputs(state.hash, output.frame, output.X_WG);
-        if (model.picks()) mix(state.hash, static_cast<std::uint64_t>(output.held));
+        if (model.picks())
+            mix(state.hash, static_cast<std::uint64_t>(output.held));
+        else
+            output.held = kPartNotTold;
     }
-    for (TickOutput& output : outputs) output.steps_done = state.assembly.done;
     if (!model.pick.steps.empty()) mix(state.hash, state.assembly.done);
     if (model.picks()) pickAndLetGo(model, state, readings, outputs);
     ++state.tick;

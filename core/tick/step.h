@@ -24,7 +24,7 @@ struct TickOutput {
     Wrench F_D_B;                   // to be commanded
     TickFrame frame;                // everything else
     Pose X_WG;                      // proxy of the held part
-    std::int32_t held = kNoPart;    // which part that is, in the order of the scene
+    std::int32_t held = kNoPart;    // which part that is, in the order of the scene; kPartNotTold: the scene picks none up
     scene::StepSet steps_done = 0;  // of an assembly, as the tick began
 };
 

@@ -170,6 +170,8 @@ constexpr std::array kTables{
     TableInfo{"task.contour_following", "`[task]` of type `contour_following`", ""},
     TableInfo{"task.free_placement", "`[task]` of type `free_placement`", ""},
     TableInfo{"task.discrimination_pair", "`[task]` of type `discrimination_pair`", ""},
+    TableInfo{"task.assembly", "`[task]` of type `assembly`", "Hands pick parts up, by effects.pick, and put each where it belongs."},
+    TableInfo{"task.step", "`[[task.step]]` of an assembly", ""},
     TableInfo{"feedback", "`[feedback]`", ""},
     TableInfo{"view", "`[view]`", "What the participant's window looks like, in all conditions: only this says so. It is stored with the protocol and\nlogged with each session that a window shows; what the experimenter chooses for the console changes nothing of it."},
     TableInfo{"secondary", "`[secondary]`", "In the manner of ISO 17488: onsets 3 to 5 s apart, responses from 100 to 2500 ms. Ours: intervals are uniform\nbetween the bounds and go on from an attempt's first tick; other presses are false alarms."},

@@ -1,4 +1,5 @@
 #include "study/protocol/protocol_reader.h"
+#include "study/protocol/assembly_check.h"
 
 #include <fmt/format.h>
 
@@ -386,6 +387,8 @@ private:
                                          [&](const auto& known) { return known.name == condition.device; });
         if (device != devices_.end() && root_.has("task")) {
             const std::size_t before = undoable_.size();
+            if (std::holds_alternative<plan::AssemblyTask>(condition.task.form))
+                checkAssembly(tables, condition, devices_, geometries_, undoable_);
             checkReach(tables, condition, *device, geometries_, undoable_, warnings_);
             if (undoable_.size() == before) checkBody(tables, condition, *device, geometries_, undoable_);
             checkHuman(tables, condition, *device, step != nullptr ? step->path : "", undoable_, warnings_);

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/scene/scene_spec.h"
 #include "study/protocol/key_table.h"
 
 namespace passung::protocol {
@@ -11,7 +12,7 @@ namespace passung::protocol {
 inline constexpr Range kPositive{.low = 0, .low_excluded = true};
 inline constexpr Range kTimeout{.low = 0, .high = 3600, .low_excluded = true};
 inline constexpr std::array kTaskKeys{
-    Key{"task", "type", KeyType::Choice, {}, "peg_in_hole|narrow_passage|contour_following|free_placement|discrimination_pair", "!", "Kind of trial; its own keys follow."},
+    Key{"task", "type", KeyType::Choice, {}, "peg_in_hole|narrow_passage|contour_following|free_placement|discrimination_pair|assembly", "!", "Kind of trial; its own keys follow."},
 
     Key{"task.peg_in_hole", "target", KeyType::Text, {}, "", "!", "Name of the bore_plate part to insert into."},
     Key{"task.peg_in_hole", "insertion_depth_mm", KeyType::Number, kPositive, "", "20", "Depth of the tip below the mouth that counts as fully inserted."},
@@ -50,6 +51,25 @@ inline constexpr std::array kTaskKeys{
     Key{"task.discrimination_pair", "answer_s", KeyType::Number, {.low = 0, .high = 600, .low_excluded = true}, "", "10", "Time for the answer after the second interval, while nothing is felt: the first button says the first interval, the second button the second."},
     Key{"task.discrimination_pair", "question", KeyType::Text, {}, "", "!", "Question to the participant, such as \"Which was stiffer?\"."},
     Key{"task.discrimination_pair", "judged", KeyType::Choice, {}, "stiffness|roughness", "stiffness", "Property that a simulated person compares; people are asked the question."},
+
+    Key{"task.assembly", "step", KeyType::Tables, {}, "", "!", "Steps of the assembly, at most 63: success once all are done."},
+    Key{"task.assembly", "hints", KeyType::Boolean, {}, "", "true", "True where the goals of the steps that may be done next are drawn."},
+    Key{"task.assembly", "undo_button", KeyType::Integer, {1, scene::kButtons}, "", "(none)", "Number of the device's button, from 1, that takes back the step that was done last: its part can be picked up again. No effect may have it."},
+    Key{"task.assembly", "timeout_s", KeyType::Number, kTimeout, "", "300", "Time from the start of the trial after which the trial ends without success."},
+    Key{"task.assembly", "leave_radius_mm", KeyType::Number, {.low = 0}, "", "0", "Radius of a sphere about the first hand's start; the completion time starts when the hand leaves the sphere."},
+
+    Key{"task.step", "part", KeyType::Text, {}, "", "!", "Name of a part with pickable = true; each belongs to one step."},
+    Key{"task.step", "name", KeyType::Text, {}, "", "(the part's)", "Name of the step."},
+    Key{"task.step", "into", KeyType::Text, {}, "", "(the world)", "Name of the part in whose frame the goal is, where that part then is: one that no hand moves, or one that a step before it locks."},
+    Key{"task.step", "position", KeyType::LengthVector, {}, "", "!", "Goal of the part's origin."},
+    Key{"task.step", "rotation_deg", KeyType::Vector, {}, "", "(zero)", "Goal of the part's rotation, as in a pose."},
+    Key{"task.step", "position_tolerance_mm", KeyType::Number, kPositive, "", "1", "Largest distance from the goal at which the step is done when the part is let go."},
+    Key{"task.step", "angle_tolerance_deg", KeyType::Number, {.low = 0, .high = 180, .low_excluded = true}, "", "5", "Largest angle from the goal."},
+    Key{"task.step", "symmetry", KeyType::Integer, {0, 360}, "", "1", "In how many turns about its z axis the part looks the same: 1 in a full turn only, 4 for a square; 0 in any, as a round pin."},
+    Key{"task.step", "after", KeyType::Texts, {}, "", "(none)", "Names of the steps that have to be done before. A part that is let go at its goal earlier waits for them."},
+    Key{"task.step", "locks", KeyType::Boolean, {}, "", "true", "True: done, the part stays there for good, or until it is taken back. False: it can be taken out again, and the step is not done any more."},
+    Key{"task.step", "insertion_mm", KeyType::Number, {.low = 0}, "", "0", "Way along the goal's -z by which the part goes in at the end; 0: it is only put there. Simulated people go by it; people see where the part goes."},
+    Key{"task.step", "hand", KeyType::Text, {}, "", "(the first)", "Name of the `[[hand]]` that is asked to do it; any may."},
 };
 // clang-format on
 

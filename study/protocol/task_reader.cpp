@@ -6,6 +6,7 @@
 #include <array>
 
 #include "study/plan/scene_parts.h"
+#include "study/protocol/assembly_reader.h"
 #include "study/protocol/peg_in_hole_reader.h"
 #include "study/protocol/scene_node.h"
 #include "study/protocol/trial_types.h"
@@ -121,7 +122,7 @@ bool isTaskKey(const std::string& type, const std::string& key) {
     return findKey(tables, key) != nullptr;
 }
 
-plan::Task readTask(const StudyTables& tables, const scene::SceneSpec* scene, Errors& errors) {
+plan::Task readTask(const StudyTables& tables, scene::SceneSpec* scene, Errors& errors) {
     const std::size_t before = errors.size();
     plan::Task task;
     const Node* type = tables.task.find("type");
@@ -139,13 +140,16 @@ plan::Task readTask(const StudyTables& tables, const scene::SceneSpec* scene, Er
     const TableReader read(tables.task, {"task", found->keys}, "task", errors);
     const bool own_sound = errors.size() == before;
     const bool placement = found->name == "free_placement", pair = found->name == "discrimination_pair";
+    const bool assembly = found->name == "assembly";
     const scene::PartSpec* target =
-        placement || scene == nullptr || !read.has("target") ? nullptr : findTarget(read, *scene);
+        placement || assembly || scene == nullptr || !read.has("target") ? nullptr : findTarget(read, *scene);
     if (!own_sound || scene == nullptr) return task;
-    if (!placement) task.target = read.text("target");
+    if (!placement && !assembly) task.target = read.text("target");
     if (!pair) task.timeout = read.number("timeout_s");
     if (!pair) task.leave_radius = read.number("leave_radius_mm");
-    if (placement) {
+    if (assembly) {
+        task.form = readAssembly(read, tables, unitsOf(tables), *scene, errors);
+    } else if (placement) {
         task.form = readPlacement(read, unitsOf(tables));
     } else if (pair) {
         const auto form = readPair(read, tables, *scene, errors);

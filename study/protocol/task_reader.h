@@ -7,8 +7,9 @@
 namespace passung::protocol {
 
 /// Reads [task] as its type declares it (trial_types.h). Sentences of errors name keys as the user wrote them. Without
-/// a `scene` (nullptr: its parts are not known) it looks at what the table says by itself.
-plan::Task readTask(const StudyTables& tables, const scene::SceneSpec* scene, Errors& errors);
+/// a `scene` (nullptr: its parts are not known) it looks at what the table says by itself. The steps of an
+/// assembly go into the scene.
+plan::Task readTask(const StudyTables& tables, scene::SceneSpec* scene, Errors& errors);
 
 /// Tells whether [task] has this key where its type is this one.
 bool isTaskKey(const std::string& type, const std::string& key);

@@ -43,6 +43,16 @@ std::string stepJson(const plan::Condition& condition, const measures::StepChang
     return json.str();
 }
 
+std::vector<StepEnd> stepEnds(const plan::Condition& condition, const std::vector<measures::StepResult>& results) {
+    const auto& named = std::get<plan::AssemblyTask>(condition.task.form).steps;
+    std::vector<StepEnd> ends;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        const std::size_t part = condition.scene.effects.pick.steps[i].part;
+        ends.push_back({named[i].name, condition.scene.parts[part].name, results[i]});
+    }
+    return ends;
+}
+
 }  // namespace
 
 std::uint64_t attemptSeed(const SessionSetup& setup, const design::PlannedTrial& trial, int attempt_no) {
@@ -314,6 +324,8 @@ AttemptEnd Session::describeEnd(LoopHealth health) {
             context.overlaps = overlaps;
     }
     end.overlaps = context.overlaps;
+    if (const auto* assembly = std::get_if<measures::AssemblyFacts>(&context.form))
+        end.steps = stepEnds(*attempt().condition, assembly->steps);
     std::vector<TickRecord> judged;
     for (const TickRecord& record : attempt().records) judged.push_back(attempt().view.of(record, attempt().others));
     end.measures = measures::computeMeasures(judged, context);

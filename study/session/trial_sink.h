@@ -32,6 +32,13 @@ struct AttemptStart {
 /// max_attempts.
 enum class Decider { Protocol, Experimenter, Interruption };
 
+/// What became of a step of an assembly.
+struct StepEnd {
+    std::string name, part;
+    measures::StepResult result;
+    friend bool operator==(const StepEnd&, const StepEnd&) = default;
+};
+
 struct AttemptEnd {
     std::int64_t end_ns = 0;
     measures::Outcome outcome = measures::Outcome::Aborted;
@@ -40,6 +47,7 @@ struct AttemptEnd {
     std::vector<measures::Value> measures;
     std::vector<measures::Detection> detections;  // of the secondary task, by time
     std::vector<measures::TickOverlap> overlaps;  // of the ticks that were judged
+    std::vector<StepEnd> steps;                   // of an assembly, in the order of the protocol
     LoopHealth health;
     bool timing_measured = true;  // false in virtual time: timing cells are exported as NA
     std::optional<StaircaseAnswer> staircase = {};

@@ -36,15 +36,16 @@ std::string chunkFault(const std::string& stream, const std::string& encoding, s
                        std::int64_t count, std::int64_t crc32, std::span<const std::byte> data) {
     const Chunk stored{first_tick, count, static_cast<std::uint32_t>(crc32), {data.begin(), data.end()}};
     if (crc32 != static_cast<std::int64_t>(stored.crc32)) return "its checksum is none";
-    const bool ticks = isTickStream(stream), navigation = isNavigationStream(stream);
-    const auto chunk = ticks        ? unpackTicks(stored, encoding)
-                       : navigation ? unpackNavigation(stored, encoding)
-                                    : unpackTiming(stored, encoding);
+    const bool ticks = isTickStream(stream);
+    const auto extra = extraNamed(stream);
+    const auto chunk = ticks   ? unpackTicks(stored, encoding)
+                       : extra ? unpackExtra(*extra, stored, encoding)
+                               : unpackTiming(stored, encoding);
     if (!chunk) return chunk.errors().front().message;
     std::vector<TickRecord> records;
-    const auto sound = ticks        ? decodeTicks(*chunk, records)
-                       : navigation ? decodeNavigation(*chunk, records)
-                                    : decodeTiming(*chunk, records);
+    const auto sound = ticks   ? decodeTicks(*chunk, records)
+                       : extra ? decodeExtra(*extra, *chunk, records)
+                               : decodeTiming(*chunk, records);
     return sound ? "" : sound.errors().front().message;
 }
 

@@ -329,9 +329,14 @@ Result<std::vector<QuestionnaireRunRow>> StoreReader::questionnaireRuns() const 
     return guarded(path_, [&] { return readQuestionnaireRuns(*database_); });
 }
 
-Result<bool> StoreReader::hasNavigation() const {
+Result<std::vector<Extra>> StoreReader::extras() const {
     return guarded(path_, [&] {
-        return database_->integer("SELECT EXISTS(SELECT 1 FROM stream WHERE stream LIKE 'navigation%')") != 0;
+        std::vector<Extra> found;
+        for (const Extra extra : kExtras) {
+            Statement known = database_->prepare("SELECT 1 FROM stream WHERE stream GLOB ? || '*' LIMIT 1");
+            if (known.bind(extraStreamName(extra, 0)).step()) found.push_back(extra);
+        }
+        return found;
     });
 }
 
@@ -344,9 +349,13 @@ Result<std::vector<TickRecord>> StoreReader::records(std::int64_t attempt_id, st
         };
         for (const Chunk& chunk : readChunks(*database_, attempt_id, tickStreamName(hand).c_str(), unpackTicks))
             require(decodeTicks(chunk, records));
-        for (const Chunk& chunk :
-             readChunks(*database_, attempt_id, navigationStreamName(hand).c_str(), unpackNavigation))
-            require(decodeNavigation(chunk, records));
+        for (const Extra extra : kExtras) {
+            const auto unpack = [extra](const Chunk& chunk, std::string_view encoding) {
+                return unpackExtra(extra, chunk, encoding);
+            };
+            for (const Chunk& chunk : readChunks(*database_, attempt_id, extraStreamName(extra, hand).c_str(), unpack))
+                require(decodeExtra(extra, chunk, records));
+        }
         if (hand > 0) return records;
         for (const Chunk& chunk : readChunks(*database_, attempt_id, "tick_timing", unpackTiming))
             require(decodeTiming(chunk, records));

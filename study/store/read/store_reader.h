@@ -10,6 +10,7 @@
 #include "study/plan/participant.h"
 #include "study/plan/study_plan.h"
 #include "study/store/rows/rows.h"
+#include "study/store/samples/sample_codec.h"
 
 namespace passung::store {
 
@@ -67,8 +68,8 @@ public:
     /// duration_ns is 0 where it was not measured.
     /// `hand`: of the condition's scene, from 0. Times are known of the first one's.
     Result<std::vector<TickRecord>> records(std::int64_t attempt_id, std::size_t hand = 0) const;
-    /// Tells whether any attempt's ticks tell of navigation.
-    Result<bool> hasNavigation() const;
+    /// What any attempt's ticks have beside.
+    Result<std::vector<Extra>> extras() const;
 
 private:
     StoreReader(std::string path, std::unique_ptr<Database> database);

@@ -1,5 +1,6 @@
 #include "study/store/rows/attempt_rows.h"
 
+#include "study/store/rows/assembly_step_rows.h"
 #include "study/store/rows/contact_energy_rows.h"
 #include "study/store/rows/delivery_rows.h"
 #include "study/store/rows/exact_overlap_rows.h"
@@ -106,6 +107,7 @@ void readParts(const Database& database, AttemptRow& attempt) {
             attempt.undefined_measures.push_back(values.text(0));
     }
     attempt.overlaps = readExactOverlaps(database, attempt.attempt_id);
+    attempt.steps = readAssemblySteps(database, attempt.attempt_id);
     attempt.contact_energy = readContactEnergy(database, attempt.attempt_id);
     attempt.delivered = readDelivery(database, attempt.attempt_id);
     attempt.presentation = readPresentation(database, attempt.attempt_id);

@@ -11,6 +11,7 @@
 #include "study/measures/cues.h"
 #include "study/measures/measures.h"
 #include "study/session/apparatus.h"
+#include "study/session/trial_sink.h"
 
 namespace passung::store {
 
@@ -256,6 +257,7 @@ struct AttemptRow {
     std::optional<std::int64_t> end_tick;                // the same of its end
     std::map<std::string, double> measures;              // only those that are defined for this attempt
     std::vector<std::string> undefined_measures;         // recorded, without a value
+    std::vector<session::StepEnd> steps;                 // of an assembly
     std::vector<measures::TickOverlap> overlaps;         // of judged ticks; none before schema revision 17
     std::vector<session::ContactEnergy> contact_energy;  // none of attempts from before schema revision 6
     std::optional<session::Presentation> presentation;   // none: no window showed it

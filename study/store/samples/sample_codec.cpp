@@ -127,6 +127,19 @@ Layout makeNavigationLayout() {
     return layout;
 }
 
+Layout makeBodiesLayout() {
+    Layout layout;
+    layout.add(
+        "held_part", "int32", "1",
+        "Part in the hand in this tick, its place in the scene from 0; -1: none. The part is where the proxy is; "
+        "let go it stays where it was in the hand's last tick",
+        offsetof(TickRecord, held));
+    layout.add("steps_done", "int64", "1",
+               "Steps of the assembly that were done as the tick began: bit 0 the first step",
+               offsetof(TickRecord, steps_done));
+    return layout;
+}
+
 const Layout& tickLayout() {
     static const Layout layout = makeTickLayout();
     return layout;
@@ -137,9 +150,9 @@ const Layout& timingLayout() {
     return layout;
 }
 
-const Layout& navigationLayout() {
-    static const Layout layout = makeNavigationLayout();
-    return layout;
+const Layout& extraLayout(Extra extra) {
+    static const std::array layouts{makeNavigationLayout(), makeBodiesLayout()};
+    return layouts[static_cast<std::size_t>(extra)];
 }
 
 Chunk encode(const Layout& layout, std::span<const TickRecord> records) {
@@ -235,7 +248,7 @@ void decode(const Layout& layout, const Chunk& chunk, std::span<TickRecord> reco
 namespace {
 
 constexpr std::string_view kOtherHand = "tick_hand_";
-constexpr std::string_view kNavigation = "navigation";
+constexpr std::array<std::string_view, kExtras.size()> kExtraNames{"navigation", "bodies"};
 
 /// Fills what `chunk` holds of `records` (ascending ticks).
 Result<Done> decodeBeside(const Layout& layout, const Chunk& chunk, std::span<TickRecord> records) {
@@ -258,17 +271,23 @@ bool isTickStream(std::string_view name) { return name == "tick" || name.starts_
 
 const std::vector<Channel>& tickChannels() { return tickLayout().channels; }
 const std::vector<Channel>& timingChannels() { return timingLayout().channels; }
-const std::vector<Channel>& navigationChannels() { return navigationLayout().channels; }
+const std::vector<Channel>& extraChannels(Extra extra) { return extraLayout(extra).channels; }
 
-std::string navigationStreamName(std::size_t hand) {
-    return std::string(kNavigation) + (hand == 0 ? "" : "_hand_" + std::to_string(hand + 1));
+std::string extraStreamName(Extra extra, std::size_t hand) {
+    return std::string(kExtraNames[static_cast<std::size_t>(extra)]) +
+           (hand == 0 ? "" : "_hand_" + std::to_string(hand + 1));
 }
 
-bool isNavigationStream(std::string_view name) { return name.starts_with(kNavigation); }
+std::optional<Extra> extraNamed(std::string_view stream) {
+    for (const Extra extra : kExtras)
+        if (stream.starts_with(kExtraNames[static_cast<std::size_t>(extra)])) return extra;
+    return std::nullopt;
+}
 
-bool haveNavigation(std::span<const TickRecord> records) {
-    return std::any_of(records.begin(), records.end(),
-                       [](const TickRecord& record) { return !std::isnan(record.navigation_scale); });
+bool haveExtra(Extra extra, std::span<const TickRecord> records) {
+    return std::any_of(records.begin(), records.end(), [extra](const TickRecord& record) {
+        return extra == Extra::Navigation ? !std::isnan(record.navigation_scale) : record.held != kPartNotTold;
+    });
 }
 
 std::string encodingText() {
@@ -295,19 +314,19 @@ std::string channelsJson(const std::vector<Channel>& channels) {
 
 Chunk encodeTicks(std::span<const TickRecord> records) { return encode(tickLayout(), records); }
 Chunk encodeTiming(std::span<const TickRecord> records) { return encode(timingLayout(), records); }
-Chunk encodeNavigation(std::span<const TickRecord> records) { return encode(navigationLayout(), records); }
+Chunk encodeExtra(Extra extra, std::span<const TickRecord> records) { return encode(extraLayout(extra), records); }
 
 Chunk packTicks(const Chunk& chunk) { return pack(tickLayout(), chunk); }
 Chunk packTiming(const Chunk& chunk) { return pack(timingLayout(), chunk); }
-Chunk packNavigation(const Chunk& chunk) { return pack(navigationLayout(), chunk); }
+Chunk packExtra(Extra extra, const Chunk& chunk) { return pack(extraLayout(extra), chunk); }
 Result<Chunk> unpackTicks(const Chunk& stored, std::string_view encoding) {
     return unpack(tickLayout(), stored, encoding);
 }
 Result<Chunk> unpackTiming(const Chunk& stored, std::string_view encoding) {
     return unpack(timingLayout(), stored, encoding);
 }
-Result<Chunk> unpackNavigation(const Chunk& stored, std::string_view encoding) {
-    return unpack(navigationLayout(), stored, encoding);
+Result<Chunk> unpackExtra(Extra extra, const Chunk& stored, std::string_view encoding) {
+    return unpack(extraLayout(extra), stored, encoding);
 }
 
 Result<Done> decodeTicks(const Chunk& chunk, std::vector<TickRecord>& records) {
@@ -325,8 +344,8 @@ Result<Done> decodeTicks(const Chunk& chunk, std::vector<TickRecord>& records) {
 Result<Done> decodeTiming(const Chunk& chunk, std::span<TickRecord> records) {
     return decodeBeside(timingLayout(), chunk, records);
 }
-Result<Done> decodeNavigation(const Chunk& chunk, std::span<TickRecord> records) {
-    return decodeBeside(navigationLayout(), chunk, records);
+Result<Done> decodeExtra(Extra extra, const Chunk& chunk, std::span<TickRecord> records) {
+    return decodeBeside(extraLayout(extra), chunk, records);
 }
 
 std::size_t consecutiveTicks(std::span<const TickRecord> records) {

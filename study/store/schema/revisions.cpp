@@ -224,6 +224,31 @@ constexpr const char* kRevision19 = R"sql(
 -- segments with a scene that has one of them.
 )sql";
 
+constexpr const char* kRevision20 = R"sql(
+-- Streams "bodies", "bodies_hand_2" and so on tell which part a hand holds in each tick, and the steps that are done: in
+-- segments with a scene whose parts are picked up.
+-- What became of each step of an attempt at an assembly
+CREATE TABLE assembly_step(
+    attempt_id INTEGER NOT NULL REFERENCES attempt ON DELETE CASCADE,
+    step INTEGER NOT NULL CHECK(step >= 0),
+    name TEXT NOT NULL,
+    part TEXT NOT NULL,
+    picked_ms INTEGER,
+    done_ms INTEGER,
+    place INTEGER NOT NULL,
+    picks INTEGER NOT NULL,
+    drops INTEGER NOT NULL,
+    order_errors INTEGER NOT NULL,
+    undos INTEGER NOT NULL,
+    hands INTEGER NOT NULL,
+    held_ms INTEGER NOT NULL,
+    path_m REAL NOT NULL,
+    peak_force_N REAL NOT NULL,
+    position_error_m REAL NOT NULL,
+    angle_error_rad REAL NOT NULL,
+    PRIMARY KEY(attempt_id, step)) STRICT, WITHOUT ROWID;
+)sql";
+
 const std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kFirstSchema, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -252,6 +277,8 @@ const std::array kRevisions = {
     Revision{18, "Ticks and energy of further hands", kRevision18, 18},
     // A reader from before takes these streams for times, and those for damage.
     Revision{19, "Clutch, scale and drift of each tick", kRevision19, 19},
+    // As for the streams of navigation.
+    Revision{20, "Parts in hands, steps of assemblies", kRevision20, 20},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

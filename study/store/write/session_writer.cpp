@@ -4,6 +4,7 @@
 
 #include "core/base/hex_text.h"
 #include "core/base/json.h"
+#include "study/store/rows/assembly_step_rows.h"
 #include "study/store/rows/contact_energy_rows.h"
 #include "study/store/rows/delivery_rows.h"
 #include "study/store/rows/event_rows.h"
@@ -165,19 +166,17 @@ void SessionWriter::insertChunk(const Database& database, std::int64_t stream_id
 }
 
 /// Made when it is first needed, in the manner of the hand's stream of ticks.
-std::int64_t SessionWriter::navigationStream(const Database& database, std::size_t hand) {
-    std::vector<std::optional<std::int64_t>>& ids = rows_.navigation_stream_ids;
-    ids.resize(rows_.tick_stream_ids.size());
-    if (ids[hand]) return *ids[hand];
-    const std::string name = navigationStreamName(hand), channels = channelsJson(navigationChannels());
+std::int64_t SessionWriter::extraStream(const Database& database, Extra extra, std::size_t hand) {
+    const std::string name = extraStreamName(extra, hand), channels = channelsJson(extraChannels(extra));
+    if (const auto known = rows_.extra_stream_ids.find(name); known != rows_.extra_stream_ids.end())
+        return known->second;
     database
         .prepare(
             "INSERT INTO stream(segment_id, stream, nominal_hz, channels_json, encoding, numerics) "
             "SELECT segment_id, ?, nominal_hz, ?, encoding, numerics FROM stream WHERE stream_id=?")
         .bind(name, channels, rows_.tick_stream_ids[hand])
         .run();
-    ids[hand] = database.lastRowId();
-    return *ids[hand];
+    return rows_.extra_stream_ids[name] = database.lastRowId();
 }
 
 void SessionWriter::insertChunks(const Database& database, std::int64_t attempt_id, std::size_t hand,
@@ -192,9 +191,10 @@ void SessionWriter::insertChunks(const Database& database, std::int64_t attempt_
             insertChunk(database, *rows_.timing_stream_id, next_chunk_, attempt_id, t0_ns,
                         packTiming(encodeTiming(run)));
         }
-        if (haveNavigation(run))
-            insertChunk(database, navigationStream(database, hand), next_chunk_, attempt_id, t0_ns,
-                        packNavigation(encodeNavigation(run)));
+        for (const Extra extra : kExtras)
+            if (haveExtra(extra, run))
+                insertChunk(database, extraStream(database, extra, hand), next_chunk_, attempt_id, t0_ns,
+                            packExtra(extra, encodeExtra(extra, run)));
         for (const TickRecord& record : run) clock.at(record);
         ++next_chunk_;  // a number that a rollback leaves unused does no harm
         records = records.subspan(count);
@@ -255,6 +255,7 @@ void SessionWriter::storeEnd(const Database& database, const OpenAttempt& attemp
     insertTiming(database, attempt_id, end.health, end.timing_measured);
     insertContactEnergy(database, attempt_id, end.health.contact_energy);
     insertExactOverlaps(database, attempt_id, end.overlaps);
+    insertAssemblySteps(database, attempt_id, end.steps);
     insertDelivery(database, attempt_id, end.health.delivered);
     if (end.health.presentation) insertPresentation(database, attempt_id, *end.health.presentation);
     insertOrderSteps(database, rows_.session_id, rows_.segment_id,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,8 +28,8 @@ public:
         std::int64_t segment_id = 0;
         std::vector<std::int64_t> tick_stream_ids;     // of each hand
         std::optional<std::int64_t> timing_stream_id;  // only where computing times are measured
-        // Of each hand, from its first tick in a scene with navigation on
-        std::vector<std::optional<std::int64_t>> navigation_stream_ids = {};
+        // By their names, from the first tick in a scene that calls for them on
+        std::map<std::string, std::int64_t> extra_stream_ids = {};
     };
 
     SessionWriter(WriterThread& thread, Rows rows, UtcClock clock);
@@ -62,7 +63,7 @@ private:
                       measures::PeriodClock clock, std::span<const TickRecord> records);
     void insertChunk(const Database& database, std::int64_t stream_id, std::int64_t chunk_no, std::int64_t attempt_id,
                      std::int64_t t0_ns, const Chunk& chunk);
-    std::int64_t navigationStream(const Database& database, std::size_t hand);
+    std::int64_t extraStream(const Database& database, Extra extra, std::size_t hand);
     void storeEnd(const Database& database, const OpenAttempt& attempt, const session::AttemptEnd& end);
     void throwFailure();
     template <class Work>

@@ -225,7 +225,7 @@ inline Result<Done> writeAttempt(store::SessionWriter& writer, std::int64_t tria
 inline void makeOlderThanHashes(const std::string& path) {
     store::Database(path, store::OpenMode::ReadWrite)
         .execute(
-            "ALTER TABLE contact_energy DROP COLUMN hand; DROP TABLE exact_overlap; ALTER TABLE timing DROP COLUMN "
+            "ALTER TABLE contact_energy DROP COLUMN hand; DROP TABLE exact_overlap; DROP TABLE assembly_step; ALTER TABLE timing DROP COLUMN "
             "processor_mean_us; ALTER TABLE timing DROP "
             "COLUMN "
             "processor_p99_us; ALTER TABLE timing DROP COLUMN processor_p999_us; ALTER TABLE timing DROP COLUMN "
