@@ -8,6 +8,7 @@ Node {
     property bool pale: false // an image only
     property real size: 1 // half of a finger's length [mm]
     property color color
+    readonly property real spread: (closed ? 0.55 : 1.4) * size
 
     Model { // its point
         source: "#Sphere"
@@ -15,16 +16,19 @@ Node {
         scale: Qt.vector3d(0.01, 0.01, 0.01).times((gripper.closed ? 0.7 : 0.55) * gripper.size)
         materials: skin
     }
-    Repeater3D {
-        model: 2
-        Model {
-            required property int index
-            source: "#Cube"
-            castsShadows: !gripper.pale
-            position: Qt.vector3d((index === 0 ? -1 : 1) * (gripper.closed ? 0.55 : 1.4) * gripper.size, 0, 0.6 * gripper.size)
-            scale: Qt.vector3d(0.004, 0.008, 0.022).times(gripper.size)
-            materials: skin
-        }
+    Model { // a finger
+        source: "#Cube"
+        castsShadows: !gripper.pale
+        position: Qt.vector3d(-gripper.spread, 0, 0.6 * gripper.size)
+        scale: Qt.vector3d(0.004, 0.008, 0.022).times(gripper.size)
+        materials: skin
+    }
+    Model { // the other
+        source: "#Cube"
+        castsShadows: !gripper.pale
+        position: Qt.vector3d(gripper.spread, 0, 0.6 * gripper.size)
+        scale: Qt.vector3d(0.004, 0.008, 0.022).times(gripper.size)
+        materials: skin
     }
     Model { // what the fingers hang from
         source: "#Cube"

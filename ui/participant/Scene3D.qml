@@ -16,7 +16,7 @@ View3D {
         readonly property color otherHeld: view.scene.dark ? "#b9a3d6" : "#a58bc2" // by another hand
         readonly property color held: view.scene.dark ? "#f0b34a" : "#e8a02c"
         readonly property color hit: "#d52e00" // the held part with the visual cue at 1
-        readonly property color loose: view.scene.dark ? "#d3dde5" : "#6f8596" // can be picked up
+        readonly property color loose: view.scene.dark ? "#c4b9a0" : "#a39880" // can be picked up
         readonly property color done: view.scene.dark ? "#5f9a80" : "#5b9a7c"
         readonly property color mark: view.scene.dark ? "#56b4e9" : "#0072b2"
     }
@@ -163,7 +163,7 @@ View3D {
             position: hand ? hand.position : Qt.vector3d(0, 0, 0)
             rotation: hand ? hand.rotation : Qt.quaternion(1, 0, 0, 0)
             closed: hand !== null && hand.closed
-            size: 0.03 * view.scene.radius
+            size: 0.045 * view.scene.radius
             color: index === 0 ? view.palette3d.held : view.palette3d.otherHeld
         }
     }
@@ -171,7 +171,7 @@ View3D {
         visible: view.scene.startsEmpty && view.scene.startMark && !view.flat
         position: view.scene.startPosition
         rotation: view.scene.startRotation
-        size: 0.03 * view.scene.radius
+        size: 0.045 * view.scene.radius
         color: view.palette3d.mark
         opacity: 0.45
         pale: true
