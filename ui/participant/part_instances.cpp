@@ -7,7 +7,7 @@ PartInstances::PartInstances() {
 }
 
 void PartInstances::setPlacement(const QVariant& placement) {
-    placement_ = placement.value<Placement>();
+    placement_ = placement.value<InstanceTable>();
     emit changed();
 }
 
@@ -25,8 +25,8 @@ void PartInstances::setColours(const QVariantList& colours) {
     emit changed();
 }
 
-const std::vector<Placed>& PartInstances::placed() const {
-    static const std::vector<Placed> kNone;
+const std::vector<PartInstance>& PartInstances::placed() const {
+    static const std::vector<PartInstance> kNone;
     if (!placement_) return kNone;
     const auto& all = images_ ? placement_->images : placement_->parts;
     const auto surface = static_cast<std::size_t>(surface_);
@@ -36,7 +36,7 @@ const std::vector<Placed>& PartInstances::placed() const {
 QByteArray PartInstances::getInstanceBuffer(int* count) {
     QByteArray table;
     table.reserve(static_cast<qsizetype>(placed().size() * sizeof(InstanceTableEntry)));
-    for (const Placed& one : placed()) {
+    for (const PartInstance& one : placed()) {
         const auto place = static_cast<std::size_t>(flat_ ? one.part : one.look);
         const QColor colour = place < colours_.size() ? colours_[place] : QColor(Qt::white);
         const InstanceTableEntry entry =

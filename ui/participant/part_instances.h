@@ -11,7 +11,7 @@
 namespace passung::participant {
 
 /// One image of a surface that many parts have. Millimetres.
-struct Placed {
+struct PartInstance {
     QVector3D position;
     QQuaternion rotation;
     int part = 0;  // in the order of the scene
@@ -19,15 +19,16 @@ struct Placed {
 };
 
 /// What a picture shows of each surface of a scene: parts, and pale images of where they belong.
-struct PlacedParts {
-    std::vector<std::vector<Placed>> parts, images;  // by surface
+struct SceneInstances {
+    std::vector<std::vector<PartInstance>> parts, images;  // by surface
 };
-using Placement = std::shared_ptr<const PlacedParts>;  // shared_ptr: every surface of a window looks into the same
+using InstanceTable =
+    std::shared_ptr<const SceneInstances>;  // shared_ptr: every surface of a window looks into the same
 
 /// Where a surface is drawn again and again, in one call of the graphics card.
 class PartInstances : public QQuick3DInstancing {
     Q_OBJECT
-    Q_PROPERTY(QVariant placement READ placement WRITE setPlacement NOTIFY changed)  // holds a Placement
+    Q_PROPERTY(QVariant placement READ placement WRITE setPlacement NOTIFY changed)  // holds a InstanceTable
     Q_PROPERTY(int surface MEMBER surface_ NOTIFY changed)
     Q_PROPERTY(bool images MEMBER images_ NOTIFY changed)  // the pale ones, in place of the parts
     Q_PROPERTY(QVariantList colours READ colours WRITE setColours NOTIFY changed)  // by look, or where `flat` by part
@@ -50,9 +51,9 @@ protected:
     QByteArray getInstanceBuffer(int* count) override;
 
 private:
-    const std::vector<Placed>& placed() const;
+    const std::vector<PartInstance>& placed() const;
 
-    Placement placement_;
+    InstanceTable placement_;
     std::vector<QColor> colours_;
     int surface_ = 0;
     bool images_ = false, flat_ = false;
@@ -60,4 +61,4 @@ private:
 
 }  // namespace passung::participant
 
-Q_DECLARE_METATYPE(passung::participant::Placement)
+Q_DECLARE_METATYPE(passung::participant::InstanceTable)

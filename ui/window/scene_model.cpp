@@ -121,7 +121,7 @@ void SceneModel::showParts(const presenter::DrawnScene& scene) {
 
 void SceneModel::place() {
     if (view_.X_WParts.size() != surface_of_.size() || surface_of_.empty()) return;
-    auto placed = std::make_shared<participant::PlacedParts>();
+    auto placed = std::make_shared<participant::SceneInstances>();
     placed->parts.resize(static_cast<std::size_t>(surfaces_.size()));
     placed->images.resize(placed->parts.size());
     std::vector<PartLook> looks(surface_of_.size(), PartLook::Fixed);
@@ -133,7 +133,8 @@ void SceneModel::place() {
         if (const std::int32_t part = view_.hands[hand].part; part >= 0)
             looks[static_cast<std::size_t>(part)] = hand == 0 ? PartLook::Held : PartLook::OtherHeld;
     const auto instance = [](std::size_t part, const Pose& X_W, PartLook look) {
-        return participant::Placed{millimetres(X_W.p), rotation(X_W.q), static_cast<int>(part), static_cast<int>(look)};
+        return participant::PartInstance{millimetres(X_W.p), rotation(X_W.q), static_cast<int>(part),
+                                         static_cast<int>(look)};
     };
     for (std::size_t part = 0; part < looks.size(); ++part)
         placed->parts[static_cast<std::size_t>(surface_of_[part])].push_back(
@@ -141,7 +142,7 @@ void SceneModel::place() {
     for (const presenter::StepImage& image : view_.images)
         placed->images[static_cast<std::size_t>(surface_of_[image.part])].push_back(
             instance(image.part, image.X_W, PartLook::Image));
-    placement_ = QVariant::fromValue(participant::Placement(std::move(placed)));
+    placement_ = QVariant::fromValue(participant::InstanceTable(std::move(placed)));
 }
 
 QVariantList SceneModel::hands() const {

@@ -20,7 +20,7 @@ class SceneModel : public QObject {
     Q_PROPERTY(QVariantList parts MEMBER parts_ NOTIFY sceneChanged)
     Q_PROPERTY(QVariantList ghosts MEMBER ghosts_ NOTIFY sceneChanged)  // pale images of the held part: one, or none
     // Of a scene whose parts are picked up, in place of `parts`: its surfaces, each "mesh", "twoSided", and where they
-    // are drawn, a participant::Placement.
+    // are drawn, a participant::InstanceTable.
     Q_PROPERTY(QVariantList surfaces MEMBER surfaces_ NOTIFY sceneChanged)
     Q_PROPERTY(double reach MEMBER reach_ NOTIFY sceneChanged)  // of all that is drawn, from the origin
     Q_PROPERTY(int partCount MEMBER part_count_ NOTIFY sceneChanged)
