@@ -49,7 +49,7 @@ set(rooms
   "analysis/stats      | core/base"
   "study/run           | ${core_rooms} devices ${study_rooms} study/session study/store analysis/truth"
   "analysis/power      | core/base ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
-  "ui/presenter        | core/base ${model_rooms} ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
+  "ui/presenter        | core/base ${model_rooms} core/loop ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
   "ui/sound            | core/base core/loop study/measures"
   "ui/controls         |"
   "ui/experimenter     | ui/controls ui/presenter"

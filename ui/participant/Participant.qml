@@ -124,6 +124,17 @@ Window {
         }
     }
 
+    StepList { // of an assembly
+        objectName: "steps"
+        anchors.left: parent.left
+        anchors.verticalCenter: parent.verticalCenter
+        anchors.leftMargin: 20
+        visible: guide.steps.length > 0 && screenView.drawn && !window.asked
+        steps: guide.steps
+        heading: guide.stepsLine
+        most: Math.max(3, Math.floor((window.height - 320) / (look.scale * 24)))
+    }
+
     Rectangle { // what came of the last trial
         objectName: "result"
         anchors.horizontalCenter: parent.horizontalCenter

@@ -16,6 +16,8 @@ View3D {
         readonly property color otherHeld: view.scene.dark ? "#b9a3d6" : "#a58bc2" // by another hand
         readonly property color held: view.scene.dark ? "#f0b34a" : "#e8a02c"
         readonly property color hit: "#d52e00" // the held part with the visual cue at 1
+        readonly property color loose: view.scene.dark ? "#c4b9a0" : "#a39880" // can be picked up
+        readonly property color done: view.scene.dark ? "#5f9a80" : "#5b9a7c"
         readonly property color mark: view.scene.dark ? "#56b4e9" : "#0072b2"
     }
     readonly property color heldColor: mixed(palette3d.held, palette3d.hit, scene.cue)
@@ -96,6 +98,83 @@ View3D {
                 }
             }
         }
+    }
+
+    // In the order of what a part may be: fixed, loose, held, in another hand, done, pale image.
+    readonly property var looks: [palette3d.rest, palette3d.loose, heldColor, palette3d.otherHeld, palette3d.done, palette3d.mark]
+    readonly property var identities: Array.from({ length: view.scene.partCount }, (_, i) => identity(i))
+    Repeater3D { // parts that are picked up, those of one surface together
+        model: view.scene.surfaces
+        delegate: Node {
+            id: surface
+            required property var modelData
+            required property int index
+            Model {
+                geometry: PartGeometry {
+                    mesh: surface.modelData.mesh
+                    reach: view.scene.reach
+                }
+                instancing: PartInstances {
+                    placement: view.scene.placement
+                    surface: surface.index
+                    colours: view.flat ? view.identities : view.looks
+                    flat: view.flat
+                }
+                materials: PrincipledMaterial {
+                    cullMode: surface.modelData.twoSided ? Material.NoCulling : Material.BackFaceCulling
+                    baseColor: "white"
+                    lighting: view.flat ? PrincipledMaterial.NoLighting : PrincipledMaterial.FragmentLighting
+                    roughness: 0.45
+                    metalness: 0.0
+                    specularAmount: 0.4
+                }
+            }
+            Model { // where they belong next
+                visible: images.count > 0 && !view.flat
+                geometry: PartGeometry {
+                    mesh: surface.modelData.mesh
+                    reach: view.scene.reach
+                }
+                castsShadows: false
+                opacity: 0.28
+                instancing: PartInstances {
+                    id: images
+                    placement: view.scene.placement
+                    surface: surface.index
+                    images: true
+                    colours: view.looks
+                }
+                materials: PrincipledMaterial {
+                    cullMode: surface.modelData.twoSided ? Material.NoCulling : Material.BackFaceCulling
+                    baseColor: "white"
+                    lighting: PrincipledMaterial.NoLighting
+                    alphaMode: PrincipledMaterial.Blend
+                }
+            }
+        }
+    }
+
+    Repeater3D { // empty hands
+        model: view.scene.hands.length
+        delegate: Gripper {
+            required property int index
+            readonly property var hand: index < view.scene.hands.length ? view.scene.hands[index] : null
+            visible: hand !== null && hand.empty && !view.flat
+            position: hand ? hand.position : Qt.vector3d(0, 0, 0)
+            rotation: hand ? hand.rotation : Qt.quaternion(1, 0, 0, 0)
+            closed: hand !== null && hand.closed
+            size: 0.045 * view.scene.radius
+            color: index === 0 ? view.palette3d.held : view.palette3d.otherHeld
+        }
+    }
+    Gripper { // where an empty hand belongs at the start
+        visible: view.scene.startsEmpty && view.scene.startMark && !view.flat
+        position: view.scene.startPosition
+        rotation: view.scene.startRotation
+        size: 0.045 * view.scene.radius
+        color: view.palette3d.mark
+        opacity: 0.45
+        pale: true
     }
 
     Repeater3D { // where the held part belongs at the start

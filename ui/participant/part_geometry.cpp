@@ -12,7 +12,6 @@ void PartGeometry::setMesh(const QVariant& mesh) {
         return QByteArray(reinterpret_cast<const char*>(values.data()),
                           static_cast<qsizetype>(values.size() * sizeof(values[0])));
     };
-    const auto vector = [](const std::array<float, 3>& v) { return QVector3D(v[0], v[1], v[2]); };
     using A = Attribute;
     clear();
     setPrimitiveType(PrimitiveType::Triangles);
@@ -22,9 +21,25 @@ void PartGeometry::setMesh(const QVariant& mesh) {
     addAttribute(A::IndexSemantic, 0, A::U32Type);
     setVertexData(bytesOf(mesh_->vertices));
     setIndexData(bytesOf(mesh_->indices));
-    setBounds(vector(mesh_->low_mm), vector(mesh_->high_mm));
-    update();
+    bound();
     emit meshChanged();
+}
+
+void PartGeometry::setReach(float reach) {
+    if (reach == reach_) return;
+    reach_ = reach;
+    if (mesh_) bound();
+    emit meshChanged();
+}
+
+void PartGeometry::bound() {
+    const auto vector = [](const std::array<float, 3>& v) { return QVector3D(v[0], v[1], v[2]); };
+    const QVector3D corner(reach_, reach_, reach_);
+    if (reach_ > 0.0f)
+        setBounds(-corner, corner);
+    else
+        setBounds(vector(mesh_->low_mm), vector(mesh_->high_mm));
+    update();
 }
 
 }  // namespace passung::participant

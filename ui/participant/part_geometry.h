@@ -15,16 +15,23 @@ using Surface = std::shared_ptr<const presenter::ShadedMesh>;  // shared_ptr: wi
 class PartGeometry : public QQuick3DGeometry {
     Q_OBJECT
     Q_PROPERTY(QVariant mesh READ mesh WRITE setMesh NOTIFY meshChanged)  // holds a Surface
+    // Of many images of one surface: all of them lie within so much of the origin [mm]; 0: there is one.
+    Q_PROPERTY(float reach READ reach WRITE setReach NOTIFY meshChanged)
 
 public:
     QVariant mesh() const { return QVariant::fromValue(mesh_); }
     void setMesh(const QVariant& mesh);
+    float reach() const { return reach_; }
+    void setReach(float reach);
 
 signals:
     void meshChanged();
 
 private:
+    void bound();
+
     Surface mesh_;
+    float reach_ = 0.0f;
 };
 
 }  // namespace passung::participant

@@ -7,6 +7,7 @@
 
 #include "core/import/mesh_import.h"
 #include "core/shape/shape.h"
+#include "study/plan/scene_parts.h"
 
 namespace passung::presenter {
 
@@ -59,10 +60,41 @@ Pose recordedPose(const TickRecord& record, plan::ShownPose which) {
     return {rotation.cast<double>().normalized(), Vec3(p[0], p[1], p[2])};
 }
 
+/// None: no hand can pick anything up.
+std::optional<DrawnPicking> pickingOf(const plan::Condition& condition) {
+    const scene::SceneSpec& spec = condition.scene;
+    if (!spec.effects.picks()) return std::nullopt;
+    DrawnPicking picking{.X_WHands = {}, .registration = spec.registration, .pick = spec.effects.pick};
+    for (std::size_t hand = 0; hand < spec.handCount(); ++hand) picking.X_WHands.push_back(plan::startPose(spec, hand));
+    if (const auto* assembly = std::get_if<plan::AssemblyTask>(&condition.task.form)) {
+        for (const plan::AssemblyStep& step : assembly->steps) picking.step_names.push_back(step.name);
+        picking.hints = assembly->hints;
+    }
+    return picking;
+}
+
+/// Where each step's part belongs, each of the others where it starts, or where an earlier step puts it.
+void extendByGoals(geometry::Bounds& bounds, const DrawnScene& scene) {
+    const std::vector<scene::AssemblyStep>& steps = scene.picking->pick.steps;
+    std::vector<Pose> X_WP;
+    for (const DrawnPart& part : scene.parts) X_WP.push_back({part.X_W.q, part.X_W.p - part.shown_offset});
+    for (const std::size_t i : scene::orderOf(steps)) {
+        const std::size_t part = steps[i].part;
+        if (part >= X_WP.size()) continue;
+        X_WP[part] = scene::goalOf(steps[i], X_WP);
+        extendBy(bounds, *scene.parts[part].mesh, {X_WP[part].q, X_WP[part].p + scene.parts[part].shown_offset});
+    }
+}
+
 }  // namespace
 
 double Camera::metresPerPixel(double height_px) const {
     return 2.0 * (X_WC.p - centre).norm() * std::tan(0.5 * opening) / height_px;
+}
+
+Pose DrawnScene::startPose() const {
+    if (held < parts.size()) return parts[held].X_W;
+    return picking && !picking->X_WHands.empty() ? picking->X_WHands.front() : Pose{};
 }
 
 Pose poseOf(const DrawnScene& scene, const TickRecord& record, plan::ShownPose which) {
@@ -74,6 +106,14 @@ Pose poseOf(const DrawnScene& scene, const TickRecord& record, plan::ShownPose w
 Pose shownPoseOfOther(const DrawnScene& scene, const TickRecord& record) { return recordedPose(record, scene.shown); }
 
 Pose shownPose(const DrawnScene& scene, const TickRecord& record) { return poseOf(scene, record, scene.shown); }
+
+Pose pointerPose(const DrawnScene& scene, const TickRecord& record) {
+    if (!scene.picking) return recordedPose(record, plan::ShownPose::Device);
+    const scene::Registration& r = scene.picking->registration;
+    const auto& p = record.device_position_m;
+    const auto& q = record.device_quaternion;
+    return r.X_WB * Pose{Quat(q[0], q[1], q[2], q[3]).normalized(), r.scale * Vec3(p[0], p[1], p[2])} * r.X_DH;
+}
 
 Result<std::shared_ptr<const ShadedMesh>> SceneArtist::surfaceOf(const scene::PartSpec& part) {
     std::string key;
@@ -107,6 +147,7 @@ std::shared_ptr<const ShadedMesh> SceneArtist::ringAround(const ShadedMesh& held
 }
 
 std::vector<Mark> SceneArtist::marksOf(const plan::Task& task, const Pose& X_WTarget, const DrawnScene& scene) {
+    if (scene.held >= scene.parts.size()) return {};  // what there is to do follows from the steps
     const DrawnPart& held = scene.parts[scene.held];
     if (std::holds_alternative<plan::PegInHoleTask>(task.form)) return {{ringAround(*held.mesh), X_WTarget, false}};
     if (const auto* passage = std::get_if<plan::NarrowPassageTask>(&task.form)) {
@@ -131,13 +172,18 @@ Result<std::shared_ptr<const DrawnScene>> SceneArtist::draw(const plan::Conditio
     scene->appearance = appearance;
     scene->shown = condition.shown;
     scene->cues = condition.cues;
+    scene->held = DrawnScene::kNothing;
     geometry::Bounds bounds;
     Pose X_WTarget;
     for (const scene::PartSpec& part : condition.scene.parts) {
         auto mesh = surfaceOf(part);
         if (!mesh) return mesh.errors();
         const bool held = part.held && part.hand == 0;
-        DrawnPart drawn{*mesh, {part.X_WP.q, part.X_WP.p + part.shown_offset}, held};
+        DrawnPart drawn{.mesh = *mesh,
+                        .X_W = {part.X_WP.q, part.X_WP.p + part.shown_offset},
+                        .held = held,
+                        .pickable = part.pickable,
+                        .shown_offset = part.shown_offset};
         if (part.held && part.hand > 0) drawn.other_hand = part.hand - 1;
         if (part.name == condition.task.target) {
             X_WTarget = drawn.X_W;
@@ -151,6 +197,8 @@ Result<std::shared_ptr<const DrawnScene>> SceneArtist::draw(const plan::Conditio
         scene->parts.push_back(std::move(drawn));
     }
     if (std::holds_alternative<plan::FreePlacementTask>(condition.task.form)) scene->target_hand.reset();
+    scene->picking = pickingOf(condition);
+    if (scene->picking) extendByGoals(bounds, *scene);
     scene->marks = marksOf(condition.task, X_WTarget, *scene);
     for (const Mark& mark : scene->marks) extendBy(bounds, *mark.mesh, mark.X_W);
     scene->floor = bounds.low.z() - kGround;

@@ -10,6 +10,7 @@
 #include "core/base/result.h"
 #include "core/base/tick_record.h"
 #include "core/scene/mesh_source.h"
+#include "core/scene/scene_spec.h"
 #include "study/plan/study_plan.h"
 #include "ui/presenter/shaded_mesh.h"
 #include "ui/presenter/task_marks.h"
@@ -32,13 +33,25 @@ struct DrawnPart {
     Pose X_W;                                    // as it is drawn; of a part in a hand at the start
     bool held = false;                           // by the first hand
     std::optional<std::size_t> other_hand = {};  // that holds it, among the others
+    bool pickable = false;
+    Vec3 shown_offset = Vec3::Zero();  // drawn so far from where it is, world axes [m]
+};
+
+/// What a scene with parts that hands pick up needs beside its parts.
+struct DrawnPicking {
+    std::vector<Pose> X_WHands;                // where each hand starts
+    scene::Registration registration;          // of the first hand
+    scene::Pick pick;                          // with the steps of an assembly
+    std::vector<std::string> step_names = {};  // of these; may be shorter
+    bool hints = false;                        // goals of the steps that may be done next are drawn
 };
 
 /// What a participant sees of a condition's scene.
 struct DrawnScene {
     std::vector<DrawnPart> parts;
-    std::size_t held = 0;
-    Vec3 held_offset = Vec3::Zero();  // drawn so far from where it is, world axes [m]
+    std::size_t held = 0;                 // by the first hand from the start; kNothing: it begins empty
+    std::optional<DrawnPicking> picking;  // none: every hand keeps what it holds
+    Vec3 held_offset = Vec3::Zero();      // drawn so far from where it is, world axes [m]
     plan::ShownPose shown = plan::ShownPose::Proxy;
     plan::Cues cues;
     plan::View appearance;
@@ -48,6 +61,10 @@ struct DrawnScene {
     double radius = 0.1;                     // of everything about the camera's centre [m]
     Camera camera;
     Vec3 light_from = Vec3::UnitZ();  // towards the light that casts shadows, length 1
+
+    static constexpr std::size_t kNothing = ~std::size_t{0};
+    /// Where the first hand starts, or its part as it is drawn.
+    Pose startPose() const;
 };
 
 /// Where either pose of the held part is drawn in a tick.
@@ -56,6 +73,10 @@ Pose poseOf(const DrawnScene& scene, const TickRecord& record, plan::ShownPose w
 Pose shownPoseOfOther(const DrawnScene& scene, const TickRecord& record);
 /// Where the held part is drawn in a tick.
 Pose shownPose(const DrawnScene& scene, const TickRecord& record);
+
+/// What a pointer moves, in a tick: the held part where the device asks it to be, or of a hand that picks parts up what
+/// its registration puts into the handle, whichever part the hand holds.
+Pose pointerPose(const DrawnScene& scene, const TickRecord& record);
 
 /// Turns conditions into what is drawn; keeps the surfaces that it has made.
 class SceneArtist {

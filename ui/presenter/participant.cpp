@@ -64,7 +64,24 @@ void drawForce(ParticipantView& view, const DrawnScene& scene, const TickRecord&
     const Vec3 force(record.force_N[0], record.force_N[1], record.force_N[2]);
     view.arrow = force.norm() >= kLeastForce;
     view.arrow_way = kArrowPerNewton * force;
-    if (view.arrow) view.arrow_from = outermost(*scene.parts[scene.held].mesh, view.X_WHeld, force.normalized());
+    if (!view.arrow) return;
+    const std::int32_t carried = view.hands.empty() ? kPartNotTold : view.hands.front().part;
+    const std::size_t part = carried == kPartNotTold ? scene.held : static_cast<std::size_t>(carried);
+    view.arrow_from = part < scene.parts.size() ? outermost(*scene.parts[part].mesh, view.X_WHeld, force.normalized())
+                                                : view.X_WHeld.p;
+}
+
+/// Everything that hands pick up, and where it belongs.
+void drawParts(ParticipantView& view, const DrawnScene& scene, const PartPoses& poses) {
+    if (!scene.picking || poses.drawn().size() != scene.parts.size()) return;
+    view.X_WParts = poses.drawn();
+    view.hands = poses.hands();
+    view.done = partsDone(scene, poses.done());
+    view.images = stepImages(scene, poses.poses(), poses.done());
+    view.steps = stepLines(*scene.picking, poses.done());
+    if (view.hands.empty()) return;
+    const std::int32_t carried = view.hands.front().part;
+    view.X_WHeld = carried >= 0 ? view.X_WParts[static_cast<std::size_t>(carried)] : view.hands.front().X_W;
 }
 
 bool hasScene(ParticipantScreen screen) {
@@ -90,11 +107,12 @@ ParticipantView participantView(const Run& run, bool feels) {
     const auto& scene = run.scene();
     if (!scene || !hasScene(view.screen)) return view;
     view.scene = view.screen != ParticipantScreen::Wait || view.brief.timed_by == plan::TimedBy::Program;
-    view.X_WStart = scene->parts[scene->held].X_W;
+    view.X_WStart = scene->startPose();
     view.X_WHeld = view.X_WStart;
     view.start_mark = view.screen == ParticipantScreen::ToStart;
+    drawParts(view, *scene, run.poses());
     if (!run.last()) return view;
-    view.X_WHeld = shownPose(*scene, *run.last());
+    if (!scene->picking) view.X_WHeld = shownPose(*scene, *run.last());
     view.X_WOthers.assign(run.others().begin(), run.others().end());
     if (view.screen != ParticipantScreen::Task) return view;
     if (scene->cues.visual)
@@ -104,7 +122,7 @@ ParticipantView participantView(const Run& run, bool feels) {
 }
 
 ParticipantView playbackView(const DrawnScene& scene, const TickRecord& record,
-                             std::span<const std::optional<TickRecord>> others) {
+                             std::span<const std::optional<TickRecord>> others, const PartPoses* poses) {
     ParticipantView view;
     view.screen = (record.status & kEngaged) != 0 ? ParticipantScreen::Task : ParticipantScreen::ToStart;
     view.scene = true;
@@ -116,6 +134,8 @@ ParticipantView playbackView(const DrawnScene& scene, const TickRecord& record,
     view.start_mark =
         (view.X_WStart.p - view.X_WHeld.p).norm() > kApart || view.X_WStart.q.angularDistance(view.X_WHeld.q) > kTurned;
     if (scene.cues.visual) view.cue = std::min(1.0, static_cast<double>(record.hand_depth_m) / scene.cues.full_depth);
+    if (poses != nullptr) drawParts(view, scene, *poses);
+    if (scene.picking) view.start_mark = false;  // of which part it were the other pose changes
     drawForce(view, scene, record);
     return view;
 }

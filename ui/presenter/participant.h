@@ -4,7 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "ui/presenter/part_poses.h"
 #include "ui/presenter/run.h"
+#include "ui/presenter/step_view.h"
 
 namespace passung::presenter {
 
@@ -32,6 +34,12 @@ struct ParticipantView {
     Pose X_WHeld;        // where the held part is drawn
     // Likewise the parts in other hands, in the order of these; none: where it starts.
     std::vector<std::optional<Pose>> X_WOthers;
+    // Of a scene whose parts are picked up: where all parts are drawn, and the hands; else none.
+    std::vector<Pose> X_WParts;
+    std::vector<DrawnHand> hands;
+    std::vector<bool> done;         // parts of steps that are done and lock
+    std::vector<StepImage> images;  // pale, where parts belong next
+    std::vector<StepLine> steps;
     bool start_mark = false;
     Pose X_WStart;
     double cue = 0.0;                                          // visual collision cue, 0 … 1
@@ -56,7 +64,8 @@ ParticipantView participantView(const Run& run, bool feels);
 /// A recorded tick: what the participant saw, with the force as an arrow whoever felt it, and as a ghost in the start
 /// mark's place the held part's other pose if it is another:
 /// the hand's where the proxy was drawn, the proxy's where the hand was. `others`: the same tick of the other hands.
+/// `poses`: where parts that are picked up then are; null: none are.
 ParticipantView playbackView(const DrawnScene& scene, const TickRecord& record,
-                             std::span<const std::optional<TickRecord>> others = {});
+                             std::span<const std::optional<TickRecord>> others = {}, const PartPoses* poses = nullptr);
 
 }  // namespace passung::presenter

@@ -6,6 +6,12 @@
 
 namespace passung::presenter {
 
+namespace {
+
+constexpr std::size_t kEvery = 1024;  // records: poses of all parts are kept so often
+
+}  // namespace
+
 Playback::Playback(std::vector<TickRecord> records, std::shared_ptr<const DrawnScene> scene,
                    std::vector<std::vector<TickRecord>> others)
     : records_(std::move(records)), others_(std::move(others)), scene_(std::move(scene)) {
@@ -26,12 +32,37 @@ Playback::Playback(std::vector<TickRecord> records, std::shared_ptr<const DrawnS
             go_ = time;
         }
     }
+    if (!scene_ || !scene_->picking) return;
+    PartPoses poses(*scene_);
+    for (std::size_t i = 0; i < records_.size(); i += kEvery) {
+        kept_.push_back(poses);
+        poses = after(std::move(poses), i, std::min(records_.size(), i + kEvery));
+    }
+    placeParts();
+}
+
+/// The poses after the records from `from` to before `to`.
+PartPoses Playback::after(PartPoses poses, std::size_t from, std::size_t to) const {
+    std::vector<const TickRecord*> hands(1 + others_.size());
+    for (std::size_t i = from; i < to; ++i) {
+        hands[0] = &records_[i];
+        for (std::size_t k = 0; k < others_.size(); ++k) hands[k + 1] = session::recordAt(others_[k], records_[i].tick);
+        poses.follow(hands);
+    }
+    return poses;
+}
+
+void Playback::placeParts() {
+    if (kept_.empty()) return;
+    const std::size_t stretch = at_ / kEvery;
+    poses_ = after(kept_[stretch], stretch * kEvery, at_ + 1);
 }
 
 void Playback::seek(double time) {
     time_ = std::clamp(time, 0.0, length());
-    const auto after = std::upper_bound(times_.begin(), times_.end(), time_);
-    at_ = after == times_.begin() ? 0 : static_cast<std::size_t>(after - times_.begin()) - 1;
+    const auto later = std::upper_bound(times_.begin(), times_.end(), time_);
+    at_ = later == times_.begin() ? 0 : static_cast<std::size_t>(later - times_.begin()) - 1;
+    placeParts();
 }
 
 std::vector<std::optional<TickRecord>> Playback::others() const {

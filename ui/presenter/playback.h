@@ -6,6 +6,7 @@
 
 #include "core/base/tick_record.h"
 #include "ui/presenter/drawn_scene.h"
+#include "ui/presenter/part_poses.h"
 #include "ui/presenter/trace.h"
 
 namespace passung::presenter {
@@ -35,6 +36,8 @@ public:
     const TickRecord& record() const { return records_[at_]; }
     /// The same of each other hand; none: no tick of it was recorded by then.
     std::vector<std::optional<TickRecord>> others() const;
+    /// Where all parts are then, of a scene whose parts are picked up.
+    const PartPoses& poses() const { return poses_; }
     const std::shared_ptr<const DrawnScene>& scene() const { return scene_; }
 
     /// The whole attempt in so many columns, the smallest and largest value of each.
@@ -43,6 +46,8 @@ public:
     std::vector<Trace::Span> overlaps(std::size_t columns) const;  // of the proxy [mm]
 
 private:
+    void placeParts();
+    PartPoses after(PartPoses poses, std::size_t from, std::size_t to) const;
     template <class Value>
     std::vector<Trace::Span> columnsOf(std::size_t columns, const Value& value) const;
 
@@ -50,6 +55,8 @@ private:
     std::vector<std::vector<TickRecord>> others_;
     std::vector<double> times_;  // of each record
     std::shared_ptr<const DrawnScene> scene_;
+    std::vector<PartPoses> kept_;  // before each kEvery-th record
+    PartPoses poses_;
     std::size_t at_ = 0;
     double time_ = 0.0, go_ = 0.0, speed_ = 1.0;
     bool plays_ = false;

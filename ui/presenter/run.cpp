@@ -108,6 +108,7 @@ void Run::prepare(const AttemptPrepared& prepared) {
     view_.condition = prepared.condition;
     view_.trial_s = view_.force_N = view_.depth_mm = 0.0;
     if (prepared.scene) scene_ = prepared.scene;
+    poses_ = scene_ ? PartPoses(*scene_) : PartPoses();
     last_.reset();
     time_ = 0.0;
     started_.reset();
@@ -214,6 +215,10 @@ std::optional<session::Command> Run::setDisplay(Display display) {
 void Run::take(std::span<const TickRecord> records) {
     for (const TickRecord& record : records) watch(record);
     if (!records.empty()) judgeLoop();
+}
+
+void Run::follow(std::span<const loop::ScreenTick> ticks) {
+    for (const loop::ScreenTick& tick : ticks) poses_.follow(tick);
 }
 
 void Run::startClock() {

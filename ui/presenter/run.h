@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "study/measures/pair_watch.h"
+#include "ui/presenter/part_poses.h"
 #include "ui/presenter/run_view.h"
 #include "ui/presenter/trace.h"
 
@@ -24,6 +25,8 @@ public:
     void take(std::span<const TickRecord> records);
     /// Where the other hands' parts are drawn in the newest of these.
     void place(std::vector<Pose> X_WOthers) { X_WOthers_ = std::move(X_WOthers); }
+    /// Where parts that are picked up are, from what a screen learns of these ticks.
+    void follow(std::span<const loop::ScreenTick> ticks);
     /// The display has got a picture that shows this tick [ns], both on one clock.
     void see(std::int64_t began_ns, std::int64_t presented_ns);
     void checkPictures(std::int64_t now_ns);
@@ -42,6 +45,8 @@ public:
     const std::optional<TickRecord>& last() const { return last_; }
     /// Where the other hands' parts are drawn in that tick; more than the scene has hands may be there.
     const std::vector<Pose>& others() const { return X_WOthers_; }
+    /// Where all parts of a scene are whose parts are picked up.
+    const PartPoses& poses() const { return poses_; }
     /// How the participant's window draws.
     const plan::View& appearance() const { return appearance_; }
     /// Of a pair: where it is; nothing before its first interval.
@@ -68,6 +73,7 @@ private:
     std::shared_ptr<const DrawnScene> scene_;
     std::optional<TickRecord> last_;
     std::vector<Pose> X_WOthers_;
+    PartPoses poses_;
     Trace force_, depth_;
     double time_ = 0.0;              // in the attempt [s]
     std::optional<double> started_;  // when the trial began; none: not yet

@@ -42,12 +42,14 @@ struct AskedDone {};
 
 /// What a participant has to know of a trial beside its scene.
 struct TrialBrief {
-    enum class Kind { Insertion, Passage, Contour, Placement, Pair };  // as in plan::Task::form
+    enum class Kind { Insertion, Passage, Contour, Placement, Pair, Assembly };  // as in plan::Task::form
     Kind kind = Kind::Insertion;
     std::string question = {};  // of a pair
     plan::TimedBy timed_by = plan::TimedBy::Program;
     plan::ShownResult result = plan::ShownResult::None;
-    bool sound = false;  // there is something to be heard
+    bool sound = false;                    // there is something to be heard
+    int pick_button = 0, undo_button = 0;  // of a hand that picks parts up, from 1; 0: none does
+    bool pick_on_press = false;            // each press closes or opens the hand
 };
 
 /// An attempt is about to begin; its scene is built now.

@@ -13,6 +13,7 @@
 
 #include "ui/experimenter/strip_item.h"
 #include "ui/participant/part_geometry.h"
+#include "ui/participant/part_instances.h"
 
 namespace passung::window {
 
@@ -57,6 +58,7 @@ App::App(const AppOptions& options)
     qmlRegisterType<experimenter::TraceItem>("Passung", 1, 0, "TraceItem");
     qmlRegisterType<experimenter::StripItem>("Passung", 1, 0, "StripItem");
     qmlRegisterType<participant::PartGeometry>("Passung", 1, 0, "PartGeometry");
+    qmlRegisterType<participant::PartInstances>("Passung", 1, 0, "PartInstances");
     QQmlContext& context = *engine_.rootContext();
     context.setContextProperty("app", this);
     context.setContextProperty("look", &look_);

@@ -141,6 +141,7 @@ void Desk::take(std::span<const loop::ScreenTick> ticks) {
         if (!tick.engaged) record.status &= ~std::uint32_t{kEngaged};  // a trial begins with all hands
     }
     run_.take(records);
+    run_.follow(ticks);
     if (ticks.empty() || !run_.scene()) return;
     const bool proxy = run_.scene()->shown == plan::ShownPose::Proxy;
     std::vector<Pose> X_WOthers;
@@ -161,11 +162,9 @@ void Desk::show(const std::vector<presenter::News>& news, const std::optional<lo
     checkPictures();
     if (run_.view().brief.sound && !speaker_) speaker_ = openSpeaker(sound_);
     if (byMouse() && newest && run_.last()) {
-        const auto& p = run_.last()->hand_position_m;
-        const auto& q = run_.last()->hand_quaternion;
-        live_->pointer().keepNear(
-            {Eigen::Quaternionf(q[0], q[1], q[2], q[3]).cast<double>().normalized(), Vec3(p[0], p[1], p[2])},
-            2.0 * live_->reach(), 2.0 * live_->swing());
+        const Pose X_W = run_.scene() ? presenter::pointerPose(*run_.scene(), *run_.last())
+                                      : presenter::pointerPose({}, *run_.last());
+        live_->pointer().keepNear(X_W, 2.0 * live_->reach(), 2.0 * live_->swing());
     }
     if (run_.scene().get() != drawn_) {
         drawn_ = run_.scene().get();

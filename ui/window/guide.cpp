@@ -1,6 +1,7 @@
 #include "ui/window/guide.h"
 
 #include <QtCore/QCoreApplication>
+#include <algorithm>
 
 namespace passung::window {
 
@@ -11,7 +12,7 @@ Guide::Guide(Desk& desk, Speech& speech) : desk_(desk), speech_(speech) {
     connect(&desk_, &Desk::happened, this, &Guide::refresh);
     connect(&desk_, &Desk::frame, this, [this] {
         const auto view = presenter::participantView(desk_.run(), !desk_.byMouse());
-        if (view.screen != view_.screen || view.interval != view_.interval) refresh();
+        if (view.screen != view_.screen || view.interval != view_.interval || view.steps != view_.steps) refresh();
     });
 }
 
@@ -42,6 +43,8 @@ QString Guide::taskLine() const {
             return speech_(QT_TRANSLATE_NOOP("participant", "Follow the line"));
         case Kind::Placement:
             return speech_(QT_TRANSLATE_NOOP("participant", "Bring the part to its place"));
+        case Kind::Assembly:
+            return speech_(QT_TRANSLATE_NOOP("participant", "Put the parts together"));
         case Kind::Pair:
             break;
     }
@@ -86,11 +89,44 @@ QString Guide::keysLine() const {
         "participant", "Keys: arrows and page up, down: move · W A S D Q E: turn · with Shift: slowly · Esc: stop"));
 }
 
+/// How a hand picks parts up, by mouse and keyboard.
+QString Guide::pickLine() const {
+    QString line =
+        view_.brief.pick_on_press
+            ? speech_(QT_TRANSLATE_NOOP("participant",
+                                        "Drag: move · Shift: depth · Ctrl: turn · space bar: grip, again: let go"))
+            : speech_(QT_TRANSLATE_NOOP(
+                  "participant", "Drag: move · Shift: depth · Ctrl: turn · hold the space bar: grip, release: let go"));
+    if (view_.brief.undo_button > 0)
+        line += speech_(QT_TRANSLATE_NOOP("participant", " · backspace: take the last step back"));
+    return line;
+}
+
+QVariantList Guide::steps() const {
+    QVariantList all;
+    if (!view_.scene) return all;
+    using State = presenter::StepLine::State;
+    for (const presenter::StepLine& step : view_.steps)
+        all.append(QVariantMap{{"name", QString::fromStdString(step.name)},
+                               {"done", step.state == State::Done},
+                               {"next", step.state == State::Next}});
+    return all;
+}
+
+QString Guide::stepsLine() const {
+    const auto done = std::count_if(view_.steps.begin(), view_.steps.end(), [](const presenter::StepLine& step) {
+        return step.state == presenter::StepLine::State::Done;
+    });
+    return speech_(QT_TRANSLATE_NOOP("participant", "Steps: %1 of %2")).arg(done).arg(view_.steps.size());
+}
+
 QString Guide::hint() const {
     switch (view_.screen) {
         case ParticipantScreen::Welcome:
             return speech_(QT_TRANSLATE_NOOP("participant", "It begins in a moment."));
         case ParticipantScreen::ToStart:
+            if (!view_.hands.empty() && view_.hands.front().part < 0)
+                return speech_(QT_TRANSLATE_NOOP("participant", "Hold the gripper still where its pale image is."));
             return speech_(QT_TRANSLATE_NOOP("participant", "Hold the part still where its pale image is."));
         case ParticipantScreen::Task:
             if (!desk_.byMouse()) return {};
@@ -98,6 +134,7 @@ QString Guide::hint() const {
                 return speech_(QT_TRANSLATE_NOOP("participant",
                                                  "Drag: move · Shift: depth · Ctrl: turn · space bar: it is there")) +
                        "\n" + keysLine();
+            if (view_.brief.pick_button > 0) return pickLine() + "\n" + keysLine();
             return speech_(QT_TRANSLATE_NOOP(
                        "participant",
                        "Drag: move · wheel or Shift + drag: depth · right button or Ctrl + drag: turn")) +

@@ -3,6 +3,7 @@
 #include <QtCore/QElapsedTimer>
 #include <QtCore/QObject>
 #include <QtCore/QUrl>
+#include <QtCore/QVariant>
 
 #include "ui/presenter/participant.h"
 #include "ui/window/desk.h"
@@ -16,6 +17,8 @@ class Guide : public QObject {
     Q_OBJECT
     Q_PROPERTY(QString line READ line NOTIFY changed)
     Q_PROPERTY(QString hint READ hint NOTIFY changed)
+    Q_PROPERTY(QVariantList steps READ steps NOTIFY changed)     // of an assembly: "name", "done", "next"
+    Q_PROPERTY(QString stepsLine READ stepsLine NOTIFY changed)  // how many are done
     Q_PROPERTY(QString result READ result NOTIFY changed)
     Q_PROPERTY(bool succeeded READ succeeded NOTIFY changed)
     Q_PROPERTY(bool handling READ handling NOTIFY changed)  // mouse and keys move the part
@@ -35,6 +38,9 @@ public:
     QString line() const;
     QString hint() const;
     QString keysLine() const;
+    QString pickLine() const;
+    QVariantList steps() const;
+    QString stepsLine() const;
     QString result() const;
     bool succeeded() const { return view_.result && view_.result->success; }
     bool handling() const;

@@ -40,6 +40,12 @@ presenter::TrialBrief briefOf(const plan::Condition& condition) {
         brief.question = pair->question;
     brief.timed_by = condition.timed_by;
     brief.result = condition.result;
+    if (condition.scene.effects.picks()) {
+        const scene::Pick& pick = condition.scene.effects.pick;
+        brief.pick_button = pick.button;
+        brief.undo_button = pick.undo_button;
+        brief.pick_on_press = pick.on_press;
+    }
     return brief;
 }
 

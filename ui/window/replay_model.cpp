@@ -98,7 +98,8 @@ void ReplayModel::close() {
 bool ReplayModel::drawsProxy() const { return playback_ && playback_->scene()->shown == plan::ShownPose::Proxy; }
 
 void ReplayModel::refresh() {
-    SceneModel::show(presenter::playbackView(*playback_->scene(), playback_->record(), playback_->others()));
+    SceneModel::show(
+        presenter::playbackView(*playback_->scene(), playback_->record(), playback_->others(), &playback_->poses()));
 }
 
 void ReplayModel::seek(double time) {

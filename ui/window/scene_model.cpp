@@ -1,9 +1,11 @@
 #include "ui/window/scene_model.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "ui/participant/part_geometry.h"
+#include "ui/participant/part_instances.h"
 
 namespace passung::window {
 
@@ -39,6 +41,9 @@ QVariantMap modelOf(const participant::Surface& mesh, const Pose& X_W, std::opti
     return model;
 }
 
+/// Colours of parts that are picked up, in the order of Scene3D's.
+enum class PartLook { Fixed, Loose, Held, OtherHeld, Done, Image };
+
 }  // namespace
 
 SceneModel::SceneModel() = default;
@@ -64,9 +69,10 @@ void SceneModel::show(const presenter::DrawnScene& scene) {
         QVariantMap model = modelOf(part.mesh, part.X_W, part.other_hand, X_WOthers_start_);
         if (part.held) ghosts_.append(model);
         model.insert("held", part.held);
-        parts_.append(model);
+        if (!scene.picking) parts_.append(model);
         corners += part.mesh->indices.size();
     }
+    showParts(scene);
     heavy_ = software_ && corners / 3 > kHeavy;
     for (const presenter::Mark& mark : scene.marks) {
         QVariantMap model = modelOf(mark.mesh, mark.X_W, scene.target_hand, X_WOthers_start_);
@@ -88,7 +94,66 @@ void SceneModel::show(const presenter::DrawnScene& scene) {
 
 void SceneModel::show(const presenter::ParticipantView& view) {
     view_ = view;
+    place();
     emit frame();
+}
+
+/// Parts of one surface are drawn together.
+void SceneModel::showParts(const presenter::DrawnScene& scene) {
+    surfaces_.clear();
+    surface_of_.clear();
+    pickable_.clear();
+    placement_ = {};
+    view_.X_WParts.clear();  // of the scene before
+    starts_empty_ = scene.picking && scene.held >= scene.parts.size();
+    if (!scene.picking) return;
+    part_count_ = static_cast<int>(scene.parts.size());
+    std::map<participant::Surface, int> known;
+    for (const presenter::DrawnPart& part : scene.parts) {
+        const auto [found, is_new] = known.try_emplace(part.mesh, static_cast<int>(surfaces_.size()));
+        if (is_new)
+            surfaces_.append(QVariantMap{{"mesh", QVariant::fromValue(part.mesh)}, {"twoSided", part.mesh->two_sided}});
+        surface_of_.push_back(found->second);
+        pickable_.push_back(part.pickable);
+    }
+    reach_ = 1e3 * (scene.camera.centre.norm() + 2.0 * scene.radius);
+}
+
+void SceneModel::place() {
+    if (view_.X_WParts.size() != surface_of_.size() || surface_of_.empty()) return;
+    auto placed = std::make_shared<participant::SceneInstances>();
+    placed->parts.resize(static_cast<std::size_t>(surfaces_.size()));
+    placed->images.resize(placed->parts.size());
+    std::vector<PartLook> looks(surface_of_.size(), PartLook::Fixed);
+    for (std::size_t part = 0; part < looks.size(); ++part) {
+        if (pickable_[part]) looks[part] = PartLook::Loose;
+        if (part < view_.done.size() && view_.done[part]) looks[part] = PartLook::Done;
+    }
+    for (std::size_t hand = view_.hands.size(); hand-- > 0;)
+        if (const std::int32_t part = view_.hands[hand].part; part >= 0)
+            looks[static_cast<std::size_t>(part)] = hand == 0 ? PartLook::Held : PartLook::OtherHeld;
+    const auto instance = [](std::size_t part, const Pose& X_W, PartLook look) {
+        return participant::PartInstance{millimetres(X_W.p), rotation(X_W.q), static_cast<int>(part),
+                                         static_cast<int>(look)};
+    };
+    for (std::size_t part = 0; part < looks.size(); ++part)
+        placed->parts[static_cast<std::size_t>(surface_of_[part])].push_back(
+            instance(part, view_.X_WParts[part], looks[part]));
+    for (const presenter::StepImage& image : view_.images)
+        placed->images[static_cast<std::size_t>(surface_of_[image.part])].push_back(
+            instance(image.part, image.X_W, PartLook::Image));
+    placement_ = QVariant::fromValue(participant::InstanceTable(std::move(placed)));
+}
+
+QVariantList SceneModel::hands() const {
+    QVariantList all;
+    for (const presenter::DrawnHand& hand : view_.hands) {
+        QVariantMap drawn = mapOf(hand.X_W);
+        drawn.insert("closed", hand.closed);
+        drawn.insert("empty", hand.part < 0);
+        all.append(drawn);
+    }
+    return all;
 }
 
 QVariantList SceneModel::others() const {

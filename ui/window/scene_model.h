@@ -19,6 +19,14 @@ class SceneModel : public QObject {
     // that moves it, -1 if none does; then position and rotation are in the frame of the hand's part.
     Q_PROPERTY(QVariantList parts MEMBER parts_ NOTIFY sceneChanged)
     Q_PROPERTY(QVariantList ghosts MEMBER ghosts_ NOTIFY sceneChanged)  // pale images of the held part: one, or none
+    // Of a scene whose parts are picked up, in place of `parts`: its surfaces, each "mesh", "twoSided", and where they
+    // are drawn, a participant::InstanceTable.
+    Q_PROPERTY(QVariantList surfaces MEMBER surfaces_ NOTIFY sceneChanged)
+    Q_PROPERTY(double reach MEMBER reach_ NOTIFY sceneChanged)  // of all that is drawn, from the origin
+    Q_PROPERTY(int partCount MEMBER part_count_ NOTIFY sceneChanged)
+    Q_PROPERTY(QVariant placement MEMBER placement_ NOTIFY frame)
+    Q_PROPERTY(QVariantList hands READ hands NOTIFY frame)                 // "position", "rotation", "closed", "empty"
+    Q_PROPERTY(bool startsEmpty MEMBER starts_empty_ NOTIFY sceneChanged)  // the first hand
     Q_PROPERTY(QVariantList marks MEMBER marks_ NOTIFY sceneChanged)
     Q_PROPERTY(QVector3D groundPosition MEMBER ground_position_ NOTIFY sceneChanged)
     Q_PROPERTY(double radius MEMBER radius_ NOTIFY sceneChanged)
@@ -58,6 +66,7 @@ public:
     const presenter::ParticipantView& view() const { return view_; }
 
     QVariantList others() const;
+    QVariantList hands() const;
     QVector3D heldPosition() const;
     QQuaternion heldRotation() const;
     bool startMark() const { return view_.start_mark; }
@@ -81,7 +90,17 @@ signals:
     void frame();
 
 private:
+    void showParts(const presenter::DrawnScene& scene);
+    void place();
+
     presenter::ParticipantView view_;
+    QVariantList surfaces_;
+    QVariant placement_;
+    std::vector<int> surface_of_;  // each part
+    std::vector<bool> pickable_;   // likewise
+    double reach_ = 0.0;
+    int part_count_ = 0;
+    bool starts_empty_ = false;
     plan::View appearance_;
     bool software_ = false, heavy_ = false;
     QVariantList parts_, ghosts_, marks_;

@@ -1,5 +1,6 @@
 #include "ui/window/screen.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace passung::window {
@@ -118,9 +119,27 @@ void Screen::wheel(double notches, int modifiers) {
         move(presenter::wheelMotion(scene->camera, planeOf(0, modifiers), notches));
 }
 
+/// The handle's button that a key stands for, as a bit; 0: none. The space bar says that something is there, or picks
+/// it up.
+std::uint32_t Screen::buttonOf(int key) const {
+    const presenter::TrialBrief& brief = desk_.run().view().brief;
+    const auto bit = [](int button) { return button > 0 ? 1u << (button - 1) : 0u; };
+    switch (key) {
+        case Qt::Key_Space:
+            return bit(std::max(1, brief.pick_button));
+        case Qt::Key_Backspace:
+            return bit(brief.undo_button);
+        case Qt::Key_1:
+            return bit(1);
+        case Qt::Key_2:
+            return bit(2);
+        default:
+            return 0;
+    }
+}
+
 bool Screen::key(int key, bool down) {
-    const std::uint32_t button = key == Qt::Key_Space || key == Qt::Key_1 ? 1u : key == Qt::Key_2 ? 2u : 0u;
-    if (button != 0) {
+    if (const std::uint32_t button = buttonOf(key); button != 0) {
         buttons_ = down ? buttons_ | button : buttons_ & ~button;
         if (mouse::Pointer* pointer = desk_.pointer()) pointer->press(buttons_);
         return true;

@@ -49,6 +49,7 @@ private:
     void takeFrame();
     void move(const presenter::PartMotion& motion);
     void steer();
+    std::uint32_t buttonOf(int key) const;
 
     Desk& desk_;
     int every_;

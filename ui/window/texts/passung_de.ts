@@ -1645,6 +1645,30 @@
         <translation>Halten Sie das Teil ruhig dort, wo sein blasses Bild ist.</translation>
     </message>
     <message>
+        <source>Put the parts together</source>
+        <translation>Setzen Sie die Teile zusammen</translation>
+    </message>
+    <message>
+        <source>Hold the gripper still where its pale image is.</source>
+        <translation>Halten Sie den Greifer ruhig dort, wo sein blasses Bild ist.</translation>
+    </message>
+    <message>
+        <source>Drag: move · Shift: depth · Ctrl: turn · space bar: grip, again: let go</source>
+        <translation>Ziehen: bewegen · Umschalt: Tiefe · Strg: drehen · Leertaste: greifen, noch einmal: loslassen</translation>
+    </message>
+    <message>
+        <source>Drag: move · Shift: depth · Ctrl: turn · hold the space bar: grip, release: let go</source>
+        <translation>Ziehen: bewegen · Umschalt: Tiefe · Strg: drehen · Leertaste halten: greifen, lösen: loslassen</translation>
+    </message>
+    <message>
+        <source> · backspace: take the last step back</source>
+        <translation> · Rücktaste: letzten Schritt zurücknehmen</translation>
+    </message>
+    <message>
+        <source>Steps: %1 of %2</source>
+        <translation>Schritte: %1 von %2</translation>
+    </message>
+    <message>
         <source>Drag: move · Shift: depth · Ctrl: turn · space bar: it is there</source>
         <translation>Ziehen: bewegen · Umschalt: Tiefe · Strg: drehen · Leertaste: es ist da</translation>
     </message>

@@ -1,0 +1,116 @@
+#include "ui/presenter/part_poses.h"
+
+#include <algorithm>
+
+namespace passung::presenter {
+
+namespace {
+
+Pose poseFrom(const std::array<float, 3>& p, const std::array<float, 4>& q) {
+    return {Eigen::Quaternionf(q[0], q[1], q[2], q[3]).cast<double>().normalized(), Vec3(p[0], p[1], p[2])};
+}
+
+/// As a record has it.
+Pose roundedToSingle(const Pose& X) {
+    Pose rounded{Quat(X.q.coeffs().cast<float>().cast<double>()), X.p.cast<float>().cast<double>()};
+    rounded.q.normalize();
+    return rounded;
+}
+
+}  // namespace
+
+PartPoses::PartPoses(const DrawnScene& scene) : shown_(scene.shown) {
+    if (!scene.picking) return;
+    for (const DrawnPart& part : scene.parts) {
+        X_WStart_.push_back({part.X_W.q, part.X_W.p - part.shown_offset});
+        X_WDrawn_.push_back(part.X_W);
+        offsets_.push_back(part.shown_offset);
+    }
+    X_WHandStart_ = scene.picking->X_WHands;
+    held_start_.assign(X_WHandStart_.size(), kNoPart);
+    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+        const DrawnPart& part = scene.parts[i];
+        const std::size_t hand = part.other_hand ? *part.other_hand + 1 : 0;
+        if ((part.held || part.other_hand) && hand < held_start_.size())
+            held_start_[hand] = static_cast<std::int32_t>(i);
+    }
+    button_ = scene.picking->pick.button;
+    begin(-1);
+}
+
+void PartPoses::begin(std::int64_t tick) {
+    tick_ = tick;
+    done_ = 0;
+    X_WP_ = X_WStart_;
+    for (std::size_t part = 0; part < X_WP_.size(); ++part) put(part, X_WStart_[part]);
+    hands_.assign(X_WHandStart_.size(), {});
+    for (std::size_t hand = 0; hand < hands_.size(); ++hand)
+        hands_[hand] = {X_WHandStart_[hand], held_start_[hand], held_start_[hand] >= 0};
+    X_WG_ = X_WHandStart_;
+}
+
+void PartPoses::put(std::size_t part, const Pose& X_WP) {
+    X_WP_[part] = X_WP;
+    X_WDrawn_[part] = {X_WP.q, X_WP.p + offsets_[part]};
+}
+
+bool PartPoses::isClosed(const TickRecord& record) const { return (record.input_flags >> (7 + button_) & 1u) != 0; }
+
+void PartPoses::take(std::span<const std::optional<HandTick>> hands) {
+    const auto valid = [this](std::int32_t part) { return part >= 0 && static_cast<std::size_t>(part) < X_WP_.size(); };
+    const std::size_t count = std::min(hands.size(), hands_.size());
+    for (std::size_t hand = 0; hand < count; ++hand) {
+        const std::int32_t before = hands_[hand].part;
+        if (hands[hand] && valid(before) && hands[hand]->part != before)
+            put(static_cast<std::size_t>(before), roundedToSingle(X_WG_[hand]));
+    }
+    for (std::size_t hand = count; hand-- > 0;) {  // the first of two has the last word
+        if (!hands[hand]) continue;
+        const HandTick& now = *hands[hand];
+        if (valid(now.part)) put(static_cast<std::size_t>(now.part), now.X_WShown);
+        hands_[hand] = {now.X_WShown, valid(now.part) ? now.part : kNoPart, now.closed || valid(now.part)};
+        X_WG_[hand] = now.X_WG;
+    }
+}
+
+void PartPoses::follow(const loop::ScreenTick& tick) {
+    if (X_WStart_.empty()) return;
+    const TickRecord& first = tick.record;
+    if (first.tick <= tick_) begin(first.tick);
+    tick_ = first.tick;
+    const bool proxy = shown_ == plan::ShownPose::Proxy;
+    std::array<std::optional<HandTick>, scene::kMostHands> hands;
+    const Pose X_WG = poseFrom(first.proxy_position_m, first.proxy_quaternion);
+    const Pose X_WH = poseFrom(first.hand_position_m, first.hand_quaternion);
+    hands[0] = {proxy ? X_WG : X_WH, X_WG, first.held, isClosed(first)};
+    for (std::size_t i = 0; i < tick.others.size(); ++i) {
+        const loop::HeldPart& other = tick.others[i];
+        hands[i + 1] = {proxy ? other.X_WG : other.X_WH, other.X_WG, other.part, other.part >= 0};
+    }
+    take(hands);
+    done_ = first.steps_done;
+    // It is as the tick ended, later than what the hands held as it began.
+    const std::int32_t resting = tick.at_rest.part;
+    if (resting >= 0 && static_cast<std::size_t>(resting) < X_WP_.size())
+        put(static_cast<std::size_t>(resting), tick.at_rest.X_WP);
+}
+
+void PartPoses::follow(std::span<const TickRecord* const> records) {
+    if (X_WStart_.empty()) return;
+    const std::int64_t tick = records.front()->tick;
+    if (tick <= tick_) begin(tick);
+    tick_ = tick;
+    const bool proxy = shown_ == plan::ShownPose::Proxy;
+    std::array<std::optional<HandTick>, scene::kMostHands> hands;
+    for (std::size_t i = 0; i < std::min(records.size(), hands.size()); ++i) {
+        if (records[i] == nullptr) continue;
+        const TickRecord& record = *records[i];
+        const Pose X_WG = poseFrom(record.proxy_position_m, record.proxy_quaternion);
+        const Pose X_WH = poseFrom(record.hand_position_m, record.hand_quaternion);
+        hands[i] = {proxy ? X_WG : X_WH, X_WG, record.held, isClosed(record)};
+    }
+    take(hands);
+    done_ = records.front()->steps_done;
+}
+
+}  // namespace passung::presenter

@@ -1,0 +1,48 @@
+#include "ui/presenter/step_view.h"
+
+#include <fmt/format.h>
+
+namespace passung::presenter {
+
+bool mayBeNext(const scene::AssemblyStep& step, std::size_t index, scene::StepSet done) {
+    return (done & scene::stepBit(index)) == 0 && (step.after & ~done) == 0;
+}
+
+std::vector<StepLine> stepLines(const DrawnPicking& picking, scene::StepSet done) {
+    std::vector<StepLine> lines;
+    for (std::size_t i = 0; i < picking.pick.steps.size(); ++i) {
+        StepLine line;
+        line.name = i < picking.step_names.size() && !picking.step_names[i].empty() ? picking.step_names[i]
+                                                                                    : fmt::format("{}", i + 1);
+        if ((done & scene::stepBit(i)) != 0)
+            line.state = StepLine::State::Done;
+        else if (mayBeNext(picking.pick.steps[i], i, done))
+            line.state = StepLine::State::Next;
+        lines.push_back(std::move(line));
+    }
+    return lines;
+}
+
+std::vector<StepImage> stepImages(const DrawnScene& scene, std::span<const Pose> X_WP, scene::StepSet done) {
+    std::vector<StepImage> images;
+    if (!scene.picking || !scene.picking->hints) return images;
+    const std::vector<scene::AssemblyStep>& steps = scene.picking->pick.steps;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        if (!mayBeNext(steps[i], i, done) || steps[i].part >= X_WP.size()) continue;
+        const Pose X_WGoal = scene::goalOf(steps[i], X_WP);
+        images.push_back({steps[i].part, {X_WGoal.q, X_WGoal.p + scene.parts[steps[i].part].shown_offset}});
+    }
+    return images;
+}
+
+std::vector<bool> partsDone(const DrawnScene& scene, scene::StepSet done) {
+    std::vector<bool> parts(scene.parts.size(), false);
+    if (!scene.picking) return parts;
+    const std::vector<scene::AssemblyStep>& steps = scene.picking->pick.steps;
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        if ((done & scene::stepBit(i)) != 0 && steps[i].locks && steps[i].part < parts.size())
+            parts[steps[i].part] = true;
+    return parts;
+}
+
+}  // namespace passung::presenter
