@@ -49,6 +49,15 @@ void Arm::startReach(const Pose& to, double duration) noexcept {
     restartClock();
 }
 
+void Arm::regrip(const Pose& X_HN) noexcept {
+    const Quat q_set = (rotationFromVector(turn_offset_) * X_WRef_.q).normalized();
+    const Pose X_WSet = Pose{q_set, X_WRef_.p + offset_} * X_HN;
+    registration_.X_DH = registration_.X_DH * X_HN;
+    X_WRef_ = X_WRef_ * X_HN;
+    offset_ = X_WSet.p - X_WRef_.p;
+    senses_.regrip(X_HN);
+}
+
 void Arm::removeOffset(const Percept& percept) noexcept {
     offset_ = clamped(offset_ + kOffsetGain * kTickSeconds * (X_WRef_.p - percept.X_WFelt.p), kMostOffset);
     const Vec3 turn = rotationVector(X_WRef_.q * percept.X_WFelt.q.conjugate());

@@ -37,6 +37,8 @@ protected:
     /// What is done from now on has begun now.
     void restartClock() noexcept;
     void startReach(const Pose& to, double duration) noexcept;
+    /// The held part is from now on what is at `X_HN` in the old one's frame; the arm's set-point stays.
+    void regrip(const Pose& X_HN) noexcept;
     /// In free space the arm sees that friction keeps it short of where it wants to be, and asks for a little more.
     void removeOffset(const Percept& percept) noexcept;
     /// Likewise while something is touched: only across `axis` (a unit vector), and only if the part stays back by more

@@ -43,6 +43,8 @@ constexpr double kBottomShare = 0.88;      // of the asked depth: a stop there i
 constexpr double kEndGain = 2.5;           // [1/s] slows down before the asked depth
 constexpr double kEndSpeed = 2e-3;         // [m/s]
 constexpr double kGiveWay = 0.25;          // [s] time constant of yielding to the sides and in tilt
+constexpr double kSlideGain = 2.0;         // [1/s]; × delay of seeing < 1/2 keeps it stable
+constexpr double kSlideSpeed = 5e-3;       // [m/s]
 
 }  // namespace
 
@@ -69,6 +71,10 @@ void Hand::look() noexcept {
 
 void Hand::believe() noexcept {
     X_WM_ = X_WTarget_ * X_TM_;
+    if (!turns_) {
+        q_goal_ = task_.X_WHeldStart.q;
+        return;
+    }
     const Vec3 axis = X_WM_.q * Vec3::UnitZ();
     const Quat align = rotationBetween(task_.X_WHeldStart.q * Vec3::UnitZ(), axis);
     q_goal_ = (align * task_.X_WHeldStart.q).normalized();
@@ -310,6 +316,35 @@ void Hand::hold(const Percept& percept) noexcept {
     best_depth_ = seenDepth(percept);
     stalled_ = 0.0;
     enter(HandPhase::Insert);
+}
+
+void Hand::startInserting(const Pose& X_WMouth, double depth, const Quat& q_WP) noexcept {
+    task_.X_WHeldStart.q = q_WP;
+    task_.insertion_depth = depth;
+    X_WTarget_ = X_WMouth;
+    attempt_ = 0;
+    spiral_angle_ = 0.0;
+    bottomed_ = doubted_ = false;
+    look();
+    startReach(HandPhase::Approach, aboveMouth(), params_.approach_duration / pace_);
+}
+
+bool Hand::isInserted(const Percept& percept) const noexcept {
+    return phase_ == HandPhase::Hold && t_ > params_.visual_delay + params_.judgement &&
+           (bottomed_ || !(seenDepth(percept) < task_.insertion_depth));
+}
+
+void Hand::startSliding(const Pose& X_WMouth, double depth, const Quat& q_WP) noexcept {
+    startInserting(X_WMouth, depth, q_WP);
+    p_MP_ = X_WM_.inverse() * X_WRef_.p;
+    turn_ = rotationVector(X_WRef_.q * q_goal_.conjugate());
+    enter(HandPhase::Hold);
+}
+
+void Hand::slide(const Percept& percept) noexcept {
+    const double speed = kSlideGain * (seenDepth(percept) - task_.insertion_depth);
+    if (percept.sees) p_MP_.z() += kTickSeconds * std::clamp(speed, -kSlideSpeed, kSlideSpeed);
+    placeReference(p_MP_, turn_);
 }
 
 void Hand::choose(const Percept& percept) noexcept {

@@ -26,20 +26,38 @@ const char* phaseName(HandPhase phase) noexcept;
 /// A simulated person's hand doing peg-in-hole. It knows its posture, the displayed force and the displayed image, each
 /// late and the bore's place seen with an error; where parts are touched it must find out.
 /// All but the constructor rt-safe; the same seed gives the same movements bit for bit.
-class Hand final : public Arm {
+class Hand : public Arm {
 public:
     /// @pre params.validate() is empty.
     Hand(const HandParams& params, const VisibleTask& task, const HandRegistration& registration, std::uint64_t seed);
 
     HandPhase phase() const noexcept { return phase_; }
 
-private:
+protected:
     void begin() noexcept override { phase_ = HandPhase::ToStart; }
     void choose(const Percept& percept) noexcept override;
+
+    /// From now on choose() puts the held part's origin `depth` [m] deep into the bore whose mouth is seen there, the
+    /// part turned as `q_WP` but for the bore's axis. It begins with a reach to above the mouth.
+    void startInserting(const Pose& X_WMouth, double depth, const Quat& q_WP) noexcept;
+    /// As deep as asked, or on the ground, as far as it is seen.
+    bool isInserted(const Percept& percept) const noexcept;
+    /// It went no deeper, near the asked depth.
+    bool onGround() const noexcept { return bottomed_; }
+    /// As startInserting() with a part that is in the bore already; then slide() in place of choose().
+    void startSliding(const Pose& X_WMouth, double depth, const Quat& q_WP) noexcept;
+    /// One tick: along the bore, until the part is seen at the asked depth.
+    void slide(const Percept& percept) noexcept;
+
+    bool turns_ = true;  // the handle can be turned
+
+private:
     void enter(HandPhase phase) noexcept;
     void startReach(HandPhase phase, const Pose& to, double duration) noexcept;
     void look() noexcept;
     void believe() noexcept;
+    double seenDepth(const Percept& percept) const noexcept;
+    Vec3 seenPosition(const Percept& percept) const noexcept;
     Pose aboveMouth() const noexcept;
 
     void toStart() noexcept;
@@ -59,13 +77,11 @@ private:
     void resumeSearch() noexcept;
     void giveUp() noexcept;
     void placeReference(const Vec3& p_MP, const Vec3& turn) noexcept;
-    double seenDepth(const Percept& percept) const noexcept;
     bool seenHeld(const Percept& percept) const noexcept;
     bool seenCaught(const Percept& percept) const noexcept;
     Vec3 feltPosition(const Percept& percept) const noexcept;
     Vec3 feltForce(const Percept& percept) const noexcept;
     Vec3 feltTurn(const Percept& percept) const noexcept;
-    Vec3 seenPosition(const Percept& percept) const noexcept;
     Vec3 seenTurn(const Percept& percept) const noexcept;
 
     HandPhase phase_ = HandPhase::ToStart;

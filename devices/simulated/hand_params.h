@@ -40,12 +40,15 @@ struct AssembleGoal {
         bool mine = true;         // to be done by this hand
     };
     struct Part {
-        Pose X_W;                  // at the start
-        Vec3 grip = Vec3::Zero();  // where the hand takes it, in the part's frame [m]
+        Pose X_W;                          // at the start
+        Vec3 grip = Vec3::Zero();          // where the hand takes it, in the part's frame [m]
+        double below = 0.0;                // how far it reaches below its origin, along its z [m]
+        Vec3 shown_offset = Vec3::Zero();  // drawn so far from where images tell it to be, world axes [m]
     };
     std::vector<Part> parts;  // of the scene
     std::vector<Step> steps;  // in the order of DisplayedImage::steps_done
     std::uint32_t close = 1;  // the buttons that close the hand
+    std::size_t hand = 0;     // whose goal this is, in the order of DisplayedImage::held
     bool on_press = false;    // a press closes it, the next one opens it; else it is closed while they are down
 };
 

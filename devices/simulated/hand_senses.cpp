@@ -24,6 +24,10 @@ void HandSenses::feel(const Pose& X_WH, const Wrench& F_W) noexcept {
     feelings_[static_cast<std::size_t>(now_) % kMemory] = {X_WH, F_W};
 }
 
+void HandSenses::regrip(const Pose& X_HN) noexcept {
+    for (Feeling& feeling : feelings_) feeling.X_WH = feeling.X_WH * X_HN;
+}
+
 void HandSenses::see(const loop::DisplayedImage& image) noexcept {
     sights_[static_cast<std::size_t>(sights_seen_) % kMemory] = {std::max<std::int64_t>(now_, 0), image};
     ++sights_seen_;
@@ -50,6 +54,9 @@ Percept HandSenses::percept() const noexcept {
         percept.sees = true;
         percept.X_WSeen = sight.image.X_WShown;
         percept.X_WHeld = sight.image.X_WHeld;
+        percept.held = sight.image.held;
+        percept.at_rest = sight.image.at_rest;
+        percept.steps_done = sight.image.steps_done;
         percept.go = sight.image.running;
         break;
     }

@@ -17,7 +17,11 @@ struct Percept {
     bool sees = false;                            // an image has arrived
     Pose X_WSeen;                                 // the held part as drawn
     std::array<Pose, scene::kMostHands> X_WHeld;  // each hand's, DisplayedImage::X_WHeld
-    bool go = false;                              // the trial has visibly started
+    // Which part each hand holds, which part lies where, what of an assembly is done: as in DisplayedImage.
+    std::array<std::int32_t, scene::kMostHands> held = loop::DisplayedImage::nobodyHolds();
+    tick::PartAtRest at_rest = {};
+    std::uint64_t steps_done = 0;
+    bool go = false;     // the trial has visibly started
     double cue = 0.0;    // contact as colour and vibration tell of it, from 0 (they do not) to 1
     bool knock = false;  // an impact is heard
 };
@@ -29,6 +33,8 @@ public:
     HandSenses(const HandParams& params, std::uint64_t cues);
     /// One call per tick, before percept().
     void feel(const Pose& X_WH, const Wrench& F_W) noexcept;
+    /// What was felt of the held part is from now on felt of what is at `X_HN` in its frame.
+    void regrip(const Pose& X_HN) noexcept;
     void see(const loop::DisplayedImage& image) noexcept;
     void notice(const GivenCues& cues) noexcept;
     Percept percept() const noexcept;

@@ -1,5 +1,6 @@
 #include "devices/simulated/task_hand.h"
 
+#include "devices/simulated/assemble_hand.h"
 #include "devices/simulated/compare_hand.h"
 #include "devices/simulated/follow_hand.h"
 #include "devices/simulated/hand.h"
@@ -18,6 +19,8 @@ std::unique_ptr<TaskHand> makeHand(const HandParams& params, const VisibleTask& 
         return std::make_unique<FollowHand>(params, task, registration, seed);
     if (std::holds_alternative<HoldGoal>(task.goal))
         return std::make_unique<HoldHand>(params, task, registration, seed);
+    if (std::holds_alternative<AssembleGoal>(task.goal))
+        return std::make_unique<AssembleHand>(params, task, registration, seed);
     return std::make_unique<Hand>(params, task, registration, seed);
 }
 

@@ -152,7 +152,7 @@ LoopApparatus::HeldDevice LoopApparatus::makeOtherDevice(const simulated::Device
                                                          std::uint64_t seed, std::int64_t trials_before) const {
     const scene::Registration r = condition.scene.hand(hand).registration;
     const simulated::HandRegistration registration{r.X_WB, r.scale, r.X_DH};
-    const simulated::VisibleTask task = holdingTask(condition, hand);
+    const simulated::VisibleTask task = otherTask(condition, hand);
     HeldDevice held;
     const bool simulated = performer_ == nullptr || performer_->kind() == plan::ParticipantKind::Simulated;
     if (!simulated || condition.timed_by != plan::TimedBy::Program) {

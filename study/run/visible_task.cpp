@@ -1,15 +1,89 @@
 #include "study/run/visible_task.h"
 
+#include <algorithm>
+#include <limits>
+
+#include "core/geometry/triangle_distance.h"
+#include "core/scene/mesh_source.h"
+#include "core/shape/shape.h"
 #include "study/plan/scene_parts.h"
 
 namespace passung::run {
+namespace {
+
+constexpr double kChordError = 1e-4;  // [m] of the surface that a hand looks for a grip on
+constexpr double kGripBelow = 0.2;    // of a part's height: so far below its top it is taken
+
+geometry::TriangleMesh surfaceOf(const scene::PartSpec& part) {
+    if (const auto* shape = std::get_if<shape::Shape>(&part.geometry)) return shape::tessellate(*shape, kChordError);
+    auto imported = scene::importMeshFile(std::get<scene::MeshFile>(part.geometry), nullptr);
+    return imported ? std::move(imported->mesh) : geometry::TriangleMesh{};
+}
+
+Vec3 closestOn(const geometry::TriangleMesh& mesh, const Vec3& p) {
+    Vec3 closest = p;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& t : mesh.triangles) {
+        const Vec3 q = geometry::closestOnTriangle(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+        if (!((q - p).norm() < least)) continue;
+        least = (q - p).norm();
+        closest = q;
+    }
+    return closest;
+}
+
+Pose shownPose(const scene::PartSpec& part) { return {part.X_WP.q, part.X_WP.p + part.shown_offset}; }
+
+/// A point of the surface near the part's top, where people take it. Of a file that cannot be read any more the origin.
+void findGrip(const scene::PartSpec& spec, simulated::AssembleGoal::Part& part) {
+    const geometry::TriangleMesh mesh = surfaceOf(spec);
+    if (mesh.vertices.empty()) return;
+    const geometry::Bounds box = geometry::boundsOf(mesh);
+    Vec3 wanted = 0.5 * (box.low + box.high);
+    wanted.z() = box.high.z() - kGripBelow * box.size().z();
+    part.grip = closestOn(mesh, wanted);
+    part.below = -box.low.z();
+}
+
+simulated::VisibleTask assemblyTask(const plan::Condition& condition, const plan::AssemblyTask& asked,
+                                    std::size_t hand) {
+    const scene::Pick& pick = condition.scene.effects.pick;
+    simulated::AssembleGoal goal;
+    for (const scene::PartSpec& part : condition.scene.parts)
+        goal.parts.push_back({.X_W = shownPose(part), .shown_offset = part.shown_offset});
+    for (std::size_t i = 0; i < pick.steps.size(); ++i) {
+        const scene::AssemblyStep& step = pick.steps[i];
+        const bool described = i < asked.steps.size();
+        goal.steps.push_back(
+            {.part = static_cast<std::int32_t>(step.part),
+             .into = step.into == scene::AssemblyStep::kWorld ? -1 : static_cast<std::int32_t>(step.into),
+             .X_IGoal = step.X_IGoal,
+             .folds = step.folds,
+             .insertion = described ? asked.steps[i].insertion : 0.0,
+             .after = step.after,
+             .mine = (described ? asked.steps[i].hand : 0) == hand});
+        const bool known = std::any_of(pick.steps.begin(), pick.steps.begin() + static_cast<std::ptrdiff_t>(i),
+                                       [&](const auto& other) { return other.part == step.part; });
+        if (!known) findGrip(condition.scene.parts[step.part], goal.parts[step.part]);
+    }
+    goal.close = 1u << (pick.button - 1);
+    goal.hand = hand;
+    goal.on_press = pick.on_press;
+    simulated::VisibleTask task;
+    task.X_WHeldStart = plan::startPose(condition.scene, hand);
+    task.goal = std::move(goal);
+    return task;
+}
+
+}  // namespace
 
 simulated::VisibleTask visibleTask(const plan::Condition& condition) {
-    const auto shown = [](const scene::PartSpec& part) { return Pose{part.X_WP.q, part.X_WP.p + part.shown_offset}; };
+    if (const auto* assembly = std::get_if<plan::AssemblyTask>(&condition.task.form))
+        return assemblyTask(condition, *assembly, 0);
     simulated::VisibleTask task;
-    if (const auto* held = plan::heldPart(condition.scene)) task.X_WHeldStart = shown(*held);
+    if (const auto* held = plan::heldPart(condition.scene)) task.X_WHeldStart = shownPose(*held);
     if (const auto* target = plan::partNamed(condition.scene, condition.task.target)) {
-        task.X_WTarget = shown(*target);
+        task.X_WTarget = shownPose(*target);
         if (target->held && target->hand > 0) task.target_hand = target->hand;
     }
     const auto& form = condition.task.form;
@@ -26,7 +100,9 @@ simulated::VisibleTask visibleTask(const plan::Condition& condition) {
     return task;
 }
 
-simulated::VisibleTask holdingTask(const plan::Condition& condition, std::size_t hand) {
+simulated::VisibleTask otherTask(const plan::Condition& condition, std::size_t hand) {
+    if (const auto* assembly = std::get_if<plan::AssemblyTask>(&condition.task.form))
+        return assemblyTask(condition, *assembly, hand);
     simulated::VisibleTask task;
     task.X_WHeldStart = condition.scene.parts[condition.scene.heldBy(hand)].X_WP;
     task.goal = simulated::HoldGoal{};

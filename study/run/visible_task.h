@@ -5,11 +5,11 @@
 
 namespace passung::run {
 
-/// What the display shows of a condition's task: parts where they are drawn, and what is asked for.
+/// What the display shows of a condition's task to the first hand: parts where they are drawn, and what is asked for.
 simulated::VisibleTask visibleTask(const plan::Condition& condition);
 
-/// What another hand than the first does meanwhile: it holds its part where that starts. @pre `hand` from 1 is one of
-/// the scene's
-simulated::VisibleTask holdingTask(const plan::Condition& condition, std::size_t hand);
+/// What another hand than the first does meanwhile: it holds its part where that starts, or does its steps of an
+/// assembly. @pre `hand` from 1 is one of the scene's
+simulated::VisibleTask otherTask(const plan::Condition& condition, std::size_t hand);
 
 }  // namespace passung::run

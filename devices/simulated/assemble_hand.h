@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "devices/simulated/hand.h"
+
+namespace passung::simulated {
+
+/// A hand that picks parts up where it sees them and puts each where it belongs, step by step: it goes to the grip,
+/// closes, looks which part it has, carries it over what is around, inserts it as Hand does or puts it down as
+/// PlaceHand does, lets it go and looks whether the step is done; else it takes the part again and corrects. While
+/// nothing of its own may be done it waits where it is. It does not look for the turn of a part that goes in only one
+/// way round, nor hands parts over.
+class AssembleHand final : public Hand {
+public:
+    /// @pre params.validate() is empty and task.goal is an AssembleGoal.
+    AssembleHand(const HandParams& params, const VisibleTask& task, const HandRegistration& registration,
+                 std::uint64_t seed);
+
+private:
+    enum class Stage {
+        ToStart,
+        HoldStart,
+        Choose,   // what is to be done next
+        Over,     // reach to above the grip
+        Look,     // where the grip is
+        Down,     // reach to the grip
+        Steady,   // stand still, correct what friction held back
+        Close,    // the button, then look what is in the hand
+        Weigh,    // stand still, look how the part lies in the hand
+        Lift,     // clear of what is around
+        Carry,    // to above the goal
+        Insert,   // as Hand
+        Slide,    // to the depth as seen
+        PutDown,  // reach to the goal
+        Correct,  // look how far it is off
+        Open,     // the button, until the hand is seen empty
+        Check,    // look whether the step is done
+        Leave,    // up from the part
+    };
+    using Step = AssembleGoal::Step;
+    using Part = AssembleGoal::Part;
+
+    void begin() noexcept override { stage_ = Stage::ToStart; }
+    void choose(const Percept& percept) noexcept override;
+    void enter(Stage stage) noexcept;
+    void reach(Stage stage, const Pose& to, double duration) noexcept;
+    bool arrived() noexcept;
+
+    void take(const Percept& percept) noexcept;
+    void toStart(const Percept& percept) noexcept;
+    void chooseStep(const Percept& percept) noexcept;
+    void look(const Percept& percept) noexcept;
+    void close(const Percept& percept) noexcept;
+    void weigh(const Percept& percept) noexcept;
+    void setOut() noexcept;
+    void carry() noexcept;
+    void bring() noexcept;
+    void insert(const Percept& percept) noexcept;
+    void correct(const Percept& percept) noexcept;
+    void open(const Percept& percept) noexcept;
+    void check(const Percept& percept) noexcept;
+
+    const Step& step() const noexcept { return goal_.steps[step_]; }
+    const Part& part() const noexcept { return goal_.parts[static_cast<std::size_t>(step().part)]; }
+    const Pose& seenPart() const noexcept { return where_[static_cast<std::size_t>(step().part)]; }
+    std::int32_t inHand(const Percept& percept) const noexcept { return percept.held[goal_.hand]; }
+    bool mayBeDone(const Step& step, std::size_t number, const Percept& percept) const noexcept;
+    Pose seenGoal() const noexcept;
+    Pose seenMouth() const noexcept;
+    Vec3 seenGrip() const noexcept { return seenPart() * part().grip; }
+    bool isInBore() const noexcept;
+    double clearHeight() const noexcept;
+    Vec3 errorOfLooking() noexcept;
+
+    const AssembleGoal& goal_;
+    Pose X_DEmpty_;            // HandRegistration::X_DH of the hand that holds nothing
+    Quat q_empty_;             // its orientation when it goes for a part
+    Pose X_DP_;                // the part in the hand
+    std::vector<Pose> where_;  // each part, as last seen
+    Stage stage_ = Stage::ToStart;
+    std::size_t step_ = 0;
+    Quat q_first_;  // the handle's posture when it was taken
+    bool turned_ = false;
+    int tries_ = 0;  // at the step that were not done when the part was let go
+    int looks_ = 0;
+    bool rested_ = false;  // the pause of a lapse is over
+};
+
+}  // namespace passung::simulated
