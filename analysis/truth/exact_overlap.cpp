@@ -417,23 +417,18 @@ std::shared_ptr<const OverlapBody> OverlapBodies::of(const scene::Part& part) {
     return body;
 }
 
-SceneOverlap::SceneOverlap(const scene::Scene& scene, OverlapBodies& bodies)
-    : held_(bodies.of(*scene.parts[scene.held])) {
+SceneOverlap::SceneOverlap(const scene::Scene& scene, OverlapBodies& bodies) : held_(scene.held) {
     for (std::size_t i = 0; i < scene.parts.size(); ++i)
-        if (i != scene.held) obstacles_.push_back({i, bodies.of(*scene.parts[i]), scene.spec.parts[i].X_WP});
-}
-
-void SceneOverlap::place(std::size_t part, const Pose& X_W) {
-    for (Obstacle& obstacle : obstacles_)
-        if (obstacle.part == part) obstacle.X_WO = X_W;
+        parts_.push_back({bodies.of(*scene.parts[i]), scene.spec.parts[i].X_WP});
 }
 
 Overlap SceneOverlap::at(const Pose& X_WG, const OverlapEffort& search) const {
     Overlap deepest;
-    for (const Obstacle& obstacle : obstacles_) {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        if (i == held_) continue;
         OverlapEffort deeper = search;
         deeper.ignore = std::max(search.ignore, deepest.depth);
-        const Overlap found = overlapOf(*held_, X_WG, *obstacle.body, obstacle.X_WO, deeper);
+        const Overlap found = overlapOf(*parts_[held_].body, X_WG, *parts_[i].body, parts_[i].X_W, deeper);
         if (found.depth > deepest.depth) {
             deepest.depth = found.depth;
             deepest.point = found.point;
@@ -445,9 +440,9 @@ Overlap SceneOverlap::at(const Pose& X_WG, const OverlapEffort& search) const {
 }
 
 bool SceneOverlap::surfacesMeet(const Pose& X_WG) const {
-    return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const Obstacle& obstacle) {
-        return truth::surfacesMeet(*held_, X_WG, *obstacle.body, obstacle.X_WO);
-    });
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+        if (i != held_ && truth::surfacesMeet(*parts_[held_].body, X_WG, *parts_[i].body, parts_[i].X_W)) return true;
+    return false;
 }
 
 }  // namespace passung::truth

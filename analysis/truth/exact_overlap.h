@@ -104,22 +104,23 @@ public:
     /// The scene and `bodies` may go.
     SceneOverlap(const scene::Scene& scene, OverlapBodies& bodies);
 
-    bool hasObstacles() const { return !obstacles_.empty(); }
-    /// Puts an obstacle elsewhere than where it starts. `part`: its number in the scene.
-    void place(std::size_t part, const Pose& X_W);
-    /// With the held part at X_WG.
+    bool hasObstacles() const { return parts_.size() > 1; }
+    /// Another part than the one that the first hand begins with is the held one. `part`: its number in the scene.
+    void hold(std::size_t part) { held_ = part; }
+    /// Puts an obstacle elsewhere than where it starts.
+    void place(std::size_t part, const Pose& X_W) { parts_[part].X_W = X_W; }
+    /// With the held part at X_WG. @pre a part is held
     Overlap at(const Pose& X_WG, const OverlapEffort& search = {}) const;
     /// Do the held part's triangles meet any obstacle's?
     bool surfacesMeet(const Pose& X_WG) const;
 
 private:
-    struct Obstacle {
-        std::size_t part;
+    struct Part {
         std::shared_ptr<const OverlapBody> body;
-        Pose X_WO;
+        Pose X_W;
     };
-    std::shared_ptr<const OverlapBody> held_;
-    std::vector<Obstacle> obstacles_;
+    std::vector<Part> parts_;
+    std::size_t held_;
 };
 
 }  // namespace passung::truth

@@ -10,11 +10,6 @@ namespace passung::measures {
 
 namespace {
 
-Pose proxyPose(const TickRecord& record) {
-    const auto& q = record.proxy_quaternion;
-    return {Quat(q[0], q[1], q[2], q[3]).normalized(), proxyPosition(record)};
-}
-
 double forceOn(const TickRecord& record) {
     return Vec3(record.force_N[0], record.force_N[1], record.force_N[2]).norm();
 }
@@ -28,21 +23,21 @@ const char* stepStateName(StepState state) {
 
 AssemblyWatch::AssemblyWatch(std::vector<scene::AssemblyStep> steps, const scene::SceneSpec& spec)
     : steps_(std::move(steps)),
+      parts_(spec),
       states_(steps_.size(), StepState::Idle),
       taken_at_(steps_.size(), Vec3::Zero()),
-      results_(steps_.size()) {
-    for (const scene::PartSpec& part : spec.parts) X_WP_.push_back(part.X_WP);
-}
+      results_(steps_.size()) {}
 
-std::optional<std::size_t> AssemblyWatch::stepOf(std::int32_t part) const {
-    const auto of_part = [part](const scene::AssemblyStep& step) { return std::cmp_equal(step.part, part); };
-    const auto found = std::find_if(steps_.begin(), steps_.end(), of_part);
+std::optional<std::size_t> AssemblyWatch::stepOf(std::size_t part) const {
+    const auto found =
+        std::find_if(steps_.begin(), steps_.end(), [part](const auto& step) { return step.part == part; });
     if (found == steps_.end()) return std::nullopt;
     return static_cast<std::size_t>(found - steps_.begin());
 }
 
-bool AssemblyWatch::isHeld(std::int32_t part) const {
-    return std::any_of(holds_.begin(), holds_.end(), [part](const Hold& hold) { return hold.part == part; });
+scene::GoalError AssemblyWatch::errorOf(std::size_t step) const {
+    const scene::AssemblyStep& asked = steps_[step];
+    return scene::goalError(parts_.poses()[asked.part], scene::goalOf(asked, parts_.poses()), asked.folds);
 }
 
 void AssemblyWatch::enter(std::size_t step, StepState state, std::size_t hand, std::vector<StepChange>& changes) {
@@ -55,69 +50,59 @@ void AssemblyWatch::follow(std::span<const TickRecord* const> hands, std::int64_
                            std::vector<StepChange>& changes) {
     const std::int64_t periods = time_ ? time - *time_ : 1;
     time_ = time;
-    std::array<std::int32_t, scene::kMostHands> left{};
-    left.fill(kNoPart);
-    for (std::size_t i = 0; i < hands.size(); ++i)
-        if (hands[i] != nullptr && hands[i]->held != holds_[i].part) left[i] = std::exchange(holds_[i].part, kNoPart);
+    const PartsWatch before = parts_;
+    parts_.follow(hands);
     for (std::size_t i = 0; i < hands.size(); ++i) {
-        if (hands[i] == nullptr || hands[i]->held < 0) continue;
-        if (holds_[i].part != hands[i]->held) take(i, *hands[i], time, changes);
-        carry(i, *hands[i], periods, changes);
+        const auto part = parts_.heldBy(i);
+        const auto step = part ? stepOf(*part) : std::nullopt;
+        if (!step || hands[i] == nullptr) continue;
+        const Vec3& from = before.poses()[*part].p;
+        if (before.heldBy(i) != part || !began_) {
+            results_[*step].hands |= 1u << i;
+            if (!before.isHeld(*part) || !began_) take(*step, i, from, time, changes);
+        }
+        results_[*step].peak_force = std::max(results_[*step].peak_force, forceOn(*hands[i]));
+        bool first = true;  // of two hands on one part
+        for (std::size_t other = 0; other < i; ++other) first = first && parts_.heldBy(other) != part;
+        if (first) carry(*step, i, from, periods, changes);
     }
     for (std::size_t i = 0; i < hands.size(); ++i)
-        if (left[i] >= 0 && !isHeld(left[i])) layDown(i, left[i], changes);
+        if (const auto left = before.heldBy(i); left && !parts_.isHeld(*left))
+            if (const auto step = stepOf(*left)) layDown(*step, i, changes);
+    began_ = true;
     for (const TickRecord* record : hands)
         if (record != nullptr) return settle(record->steps_done, time, changes);
 }
 
-void AssemblyWatch::take(std::size_t hand, const TickRecord& record, std::int64_t time,
+void AssemblyWatch::take(std::size_t step, std::size_t hand, const Vec3& from, std::int64_t time,
                          std::vector<StepChange>& changes) {
-    const auto step = stepOf(record.held);
-    const bool from_hand = isHeld(record.held);
-    holds_[hand] = {record.held, proxyPosition(record)};
-    if (!step) return;
-    StepResult& result = results_[*step];
-    result.hands |= 1u << hand;
-    if (from_hand) return;
+    StepResult& result = results_[step];
     ++result.picks;
     if (!result.picked) result.picked = time;
-    taken_at_[*step] = X_WP_[steps_[*step].part].p;
-    enter(*step, StepState::Picked, hand, changes);
+    taken_at_[step] = from;
+    enter(step, StepState::Picked, hand, changes);
 }
 
-void AssemblyWatch::carry(std::size_t hand, const TickRecord& record, std::int64_t periods,
+void AssemblyWatch::carry(std::size_t step, std::size_t hand, const Vec3& from, std::int64_t periods,
                           std::vector<StepChange>& changes) {
-    const Pose X_W = proxyPose(record);
-    X_WP_[static_cast<std::size_t>(record.held)] = X_W;
-    const double way = (X_W.p - std::exchange(holds_[hand].before, X_W.p)).norm();
-    const auto step = stepOf(record.held);
-    if (!step) return;
-    StepResult& result = results_[*step];
-    result.peak_force = std::max(result.peak_force, forceOn(record));
-    // Of two hands on one part the first one tells its way.
-    for (std::size_t other = 0; other < hand; ++other)
-        if (holds_[other].part == record.held) return;
-    result.held_periods += periods;
-    result.path += way;
-    const scene::AssemblyStep& asked = steps_[*step];
-    const scene::GoalError error = scene::goalError(X_W, scene::goalOf(asked, X_WP_), asked.folds);
-    StepState now = (X_W.p - taken_at_[*step]).norm() > kCarried ? StepState::Carried : StepState::Picked;
-    if (error.position <= kNear * asked.position_tolerance) now = StepState::Near;
-    if (scene::isAtGoal(asked, X_WP_)) now = StepState::Inserted;
-    if (now > states_[*step] || states_[*step] == StepState::Locked) enter(*step, now, hand, changes);
+    const Vec3& p = parts_.poses()[steps_[step].part].p;
+    results_[step].held_periods += periods;
+    results_[step].path += (p - from).norm();
+    StepState now = (p - taken_at_[step]).norm() > kCarried ? StepState::Carried : StepState::Picked;
+    if (errorOf(step).position <= kNear * steps_[step].position_tolerance) now = StepState::Near;
+    if (isAtGoal(step)) now = StepState::Inserted;
+    if (now > states_[step]) enter(step, now, hand, changes);
 }
 
-void AssemblyWatch::layDown(std::size_t hand, std::int32_t part, std::vector<StepChange>& changes) {
-    const auto step = stepOf(part);
-    if (!step) return;
-    changes.push_back({*step, StepChange::What::LetGo, StepState::Idle, hand});
-    if (!scene::isAtGoal(steps_[*step], X_WP_)) {
-        ++results_[*step].drops;
-    } else if ((steps_[*step].after & ~done_) != 0) {
-        ++results_[*step].order_errors;
-        changes.push_back({*step, StepChange::What::OrderError, StepState::Idle, hand});
+void AssemblyWatch::layDown(std::size_t step, std::size_t hand, std::vector<StepChange>& changes) {
+    changes.push_back({step, StepChange::What::LetGo, StepState::Idle, hand});
+    if (!isAtGoal(step)) {
+        ++results_[step].drops;
+    } else if ((steps_[step].after & ~done_) != 0) {
+        ++results_[step].order_errors;
+        changes.push_back({step, StepChange::What::OrderError, StepState::Idle, hand});
     }
-    enter(*step, StepState::Idle, hand, changes);
+    enter(step, StepState::Idle, hand, changes);
 }
 
 void AssemblyWatch::settle(std::uint64_t done, std::int64_t time, std::vector<StepChange>& changes) {
@@ -141,8 +126,7 @@ std::vector<StepResult> AssemblyWatch::results(std::int64_t start) const {
     std::vector<StepResult> results = results_;
     for (std::size_t i = 0; i < results.size(); ++i) {
         StepResult& result = results[i];
-        const scene::GoalError error =
-            scene::goalError(X_WP_[steps_[i].part], scene::goalOf(steps_[i], X_WP_), steps_[i].folds);
+        const scene::GoalError error = errorOf(i);
         result.position_error = error.position;
         result.angle_error = error.angle;
         if (result.done)

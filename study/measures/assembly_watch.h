@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,6 +9,7 @@
 #include "core/scene/assembly.h"
 #include "core/scene/scene_spec.h"
 #include "study/measures/measures.h"
+#include "study/measures/parts_watch.h"
 
 namespace passung::measures {
 
@@ -35,9 +35,8 @@ struct StepChange {
     std::size_t hand = 0;               // that did it
 };
 
-/// An assembly, tick by tick, from the records of all hands alone: a part in a hand is where that hand's proxy is, one
-/// that was let go stays where the proxy was in the hand's last record with it. Within one hold a step goes on from
-/// state to state and not back.
+/// An assembly, tick by tick, from the records of all hands alone. Within one hold a step goes on from state to state
+/// and not back.
 class AssemblyWatch {
 public:
     AssemblyWatch(std::vector<scene::AssemblyStep> steps, const scene::SceneSpec& spec);
@@ -51,27 +50,25 @@ public:
     std::vector<StepResult> results(std::int64_t start) const;
 
 private:
-    struct Hold {
-        std::int32_t part = kNoPart;
-        Vec3 before = Vec3::Zero();  // the part's origin in the record before
-    };
-
-    std::optional<std::size_t> stepOf(std::int32_t part) const;
-    bool isHeld(std::int32_t part) const;
-    void take(std::size_t hand, const TickRecord& record, std::int64_t time, std::vector<StepChange>& changes);
-    void carry(std::size_t hand, const TickRecord& record, std::int64_t periods, std::vector<StepChange>& changes);
-    void layDown(std::size_t hand, std::int32_t part, std::vector<StepChange>& changes);
+    std::optional<std::size_t> stepOf(std::size_t part) const;
+    bool isAtGoal(std::size_t step) const { return scene::isAtGoal(steps_[step], parts_.poses()); }
+    scene::GoalError errorOf(std::size_t step) const;
+    void take(std::size_t step, std::size_t hand, const Vec3& from, std::int64_t time,
+              std::vector<StepChange>& changes);
+    void carry(std::size_t step, std::size_t hand, const Vec3& from, std::int64_t periods,
+               std::vector<StepChange>& changes);
+    void layDown(std::size_t step, std::size_t hand, std::vector<StepChange>& changes);
     void settle(std::uint64_t done, std::int64_t time, std::vector<StepChange>& changes);
     void enter(std::size_t step, StepState state, std::size_t hand, std::vector<StepChange>& changes);
 
     std::vector<scene::AssemblyStep> steps_;
-    std::vector<Pose> X_WP_;
-    std::array<Hold, scene::kMostHands> holds_{};
+    PartsWatch parts_;
     std::vector<StepState> states_;
     std::vector<Vec3> taken_at_;  // of each step's part
     std::vector<StepResult> results_;
     std::uint64_t done_ = 0;
     std::optional<std::int64_t> time_;
+    bool began_ = false;
 };
 
 }  // namespace passung::measures

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <vector>
 
 #include "study/measures/overlap.h"
+#include "study/measures/parts_watch.h"
 #include "study/session/hands_view.h"
 
 namespace passung::run {
@@ -47,12 +47,6 @@ private:
     std::int64_t rendered_ = 0;
 };
 
-Pose shownPose(const TickRecord& record) {
-    const auto& p = record.proxy_position_m;
-    const auto& q = record.proxy_quaternion;
-    return {Quat(q[0], q[1], q[2], q[3]).normalized(), Vec3(p[0], p[1], p[2])};
-}
-
 }  // namespace
 
 bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord> trial,
@@ -62,10 +56,11 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
     if (std::none_of(of_scenes.begin(), of_scenes.end(), [](const auto& scene) { return scene.hasObstacles(); }))
         return false;
     struct Shown {
-        Pose X_WG;
-        std::size_t scene;
-        std::vector<std::optional<Pose>> X_WOthers;  // none: where it starts
+        std::size_t scene = 0, held = 0;
+        std::vector<Pose> X_WP;  // of every part of that scene
     };
+    std::vector<measures::PartsWatch> parts;
+    for (const scene::Scene& scene : scenes.scenes) parts.emplace_back(scene.spec);
     std::map<std::int64_t, Shown> shown;
     for (const measures::TickOverlap& tick : ticks) shown[tick.tick] = {};
     TurnOf turn(scenes.turns);
@@ -74,11 +69,12 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
         std::vector<const TickRecord*> beside;
         for (const auto& records : others) beside.push_back(session::recordAt(records, record.tick));
         const std::size_t scene = turn.next(record, areEngaged(record, beside));
+        std::vector<const TickRecord*> hands{&record};
+        hands.insert(hands.end(), beside.begin(), beside.end());
+        parts[scene].follow(hands);
         while (judged != shown.end() && judged->first < record.tick) ++judged;
         if (judged == shown.end() || judged->first != record.tick) continue;
-        judged->second = {shownPose(record), scene, {}};
-        for (const TickRecord* other : beside)
-            judged->second.X_WOthers.push_back(other != nullptr ? std::optional(shownPose(*other)) : std::nullopt);
+        judged->second = {scene, parts[scene].heldBy(0).value_or(parts[scene].poses().size()), parts[scene].poses()};
     }
     // Those that are likely the deepest first, should the work not suffice for all.
     std::vector<measures::TickOverlap*> order;
@@ -89,16 +85,15 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
     std::size_t left = kMostPieces;
     for (measures::TickOverlap* tick : order) {
         const Shown& there = shown.at(tick->tick);
-        for (std::size_t i = 0; i < there.X_WOthers.size(); ++i) {
-            const scene::SceneSpec& spec = scenes.scenes[there.scene].spec;
-            const std::size_t part = spec.heldBy(i + 1);
-            of_scenes[there.scene].place(part, there.X_WOthers[i].value_or(spec.parts[part].X_WP));
-        }
+        if (there.held == there.X_WP.size()) continue;  // an empty hand touches nothing
+        truth::SceneOverlap& scene = of_scenes[there.scene];
+        for (std::size_t part = 0; part < there.X_WP.size(); ++part) scene.place(part, there.X_WP[part]);
+        scene.hold(there.held);
         const truth::Overlap found =
-            of_scenes[there.scene].at(there.X_WG, {.tolerance = kTolerance,
-                                                   .share = kShare,
-                                                   .ignore = kIgnored,
-                                                   .most_pieces = std::min(left, kMostPiecesOfTick)});
+            scene.at(there.X_WP[there.held], {.tolerance = kTolerance,
+                                              .share = kShare,
+                                              .ignore = kIgnored,
+                                              .most_pieces = std::min(left, kMostPiecesOfTick)});
         tick->depth = found.depth;
         tick->bound = found.bound;
         left -= std::min(left, found.pieces);
