@@ -34,7 +34,7 @@ set(rooms
   "study/questionnaire | core/base"
   "study/plan          | core/base ${model_rooms} study/design study/questionnaire"
   "study/protocol      | core/base ${model_rooms} study/plan study/design study/questionnaire"
-  "study/measures      | core/base"
+  "study/measures      | core/base ${model_rooms}"
   "study/person        | core/base study/questionnaire"
   "study/session       | core/base ${model_rooms} ${plan_rooms}"
   "study/store/schema   | core/base ${plan_rooms}"

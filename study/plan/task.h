@@ -54,7 +54,7 @@ struct DiscriminationPairTask {
 };
 
 /// How a step of an assembly is asked for; what it is stands in the scene, Effects::pick.steps.
-struct AssemblyStep {
+struct AskedStep {
     std::string name;
     double insertion = 0.0;  // [m] that the part's origin goes along its goal's -z, guided by what is around, ≥ 0
     std::size_t hand = 0;    // that is asked to do it; any may
@@ -62,7 +62,7 @@ struct AssemblyStep {
 
 /// Hands pick parts up and put each where it belongs; success once all steps are done.
 struct AssemblyTask {
-    std::vector<AssemblyStep> steps;  // in the order of the scene's
+    std::vector<AskedStep> steps;  // in the order of the scene's
     bool hints = true;                // the goals of the steps that may be done next are drawn
 };
 

@@ -1,5 +1,5 @@
 #include "study/protocol/protocol_reader.h"
-#include "study/protocol/assembly_check.h"
+#include "study/protocol/assembly_reader.h"
 
 #include <fmt/format.h>
 

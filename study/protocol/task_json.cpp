@@ -44,7 +44,7 @@ struct FormJson {
     }
     void operator()(const plan::AssemblyTask& task) const {
         std::vector<std::string> steps;
-        for (const plan::AssemblyStep& step : task.steps)
+        for (const plan::AskedStep& step : task.steps)
             steps.push_back(JsonObject()
                                 .text("name", step.name)
                                 .number("insertion_m", step.insertion)

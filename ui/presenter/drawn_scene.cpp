@@ -67,7 +67,7 @@ std::optional<DrawnPicking> pickingOf(const plan::Condition& condition) {
     DrawnPicking picking{.X_WHands = {}, .registration = spec.registration, .pick = spec.effects.pick};
     for (std::size_t hand = 0; hand < spec.handCount(); ++hand) picking.X_WHands.push_back(plan::startPose(spec, hand));
     if (const auto* assembly = std::get_if<plan::AssemblyTask>(&condition.task.form)) {
-        for (const plan::AssemblyStep& step : assembly->steps) picking.step_names.push_back(step.name);
+        for (const plan::AskedStep& step : assembly->steps) picking.step_names.push_back(step.name);
         picking.hints = assembly->hints;
     }
     return picking;
