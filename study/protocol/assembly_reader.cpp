@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
+#include <optional>
 
 #include "study/protocol/start_pose.h"
 
@@ -148,65 +148,106 @@ namespace {
 
 constexpr double kReachRounding = 1e-9;  // [m]
 
-/// Where the step's part may be held: nobody can put a part where no point of it is within a hand's reach [m] beyond.
+/// How far a hand is from reaching any place of a part of this size [m]; 0: it may.
 double beyondReach(const scene::HandSpec& hand, const DeviceDescription& device, const Pose& X_WP, double longest) {
     if (hand.navigation.any()) return 0.0;
     const scene::Registration& r = hand.registration;
     const double far = (r.X_WB.inverse() * X_WP.p).norm() - longest - r.X_DH.p.norm();
-    return far - device.workspace_radius_m * r.scale;
+    return std::max(0.0, far - device.workspace_radius_m * r.scale);
 }
+
+/// One condition's steps, in an order in which they may be done.
+class StepsCheck {
+public:
+    StepsCheck(const StudyTables& tables, const plan::Condition& condition, std::span<const DeviceDescription> devices,
+               PartGeometries& geometries, Errors& errors)
+        : items_(tables.task.find("step")->items),
+          condition_(condition),
+          scene_(condition.scene),
+          devices_(devices),
+          geometries_(geometries),
+          errors_(errors),
+          before_(scene_.effects.pick.steps.size()) {
+        for (const scene::PartSpec& part : scene_.parts) X_WP_.push_back(part.X_WP);
+    }
+
+    void run() {
+        const auto& steps = scene_.effects.pick.steps;
+        for (const std::size_t i : scene::orderOf(steps)) {
+            X_WP_[steps[i].part] = scene::goalOf(steps[i], X_WP_);
+            for (std::size_t other = 0; other < steps.size(); ++other)
+                if ((steps[i].after & scene::stepBit(other)) != 0) before_[i] |= scene::stepBit(other) | before_[other];
+            checkReach(i);
+            checkRoom(i);
+        }
+    }
+
+private:
+    const scene::AssemblyStep& step(std::size_t i) const { return scene_.effects.pick.steps[i]; }
+
+    void checkReach(std::size_t i) {
+        const scene::PartSpec& part = scene_.parts[step(i).part];
+        const PartSurface* surface = geometries_.of(part);
+        std::optional<double> least;
+        for (std::size_t hand = 0; surface != nullptr && hand < scene_.handCount(); ++hand) {
+            const std::string& name = hand == 0 ? condition_.device : condition_.other_devices[hand - 1];
+            const auto device =
+                std::find_if(devices_.begin(), devices_.end(), [&](const auto& known) { return known.name == name; });
+            if (device == devices_.end()) return;  // told elsewhere
+            if (!scene_.canPick(hand)) continue;
+            const auto beyond = [&](const Pose& X) {
+                return beyondReach(scene_.hand(hand), *device, X, surface->longest());
+            };
+            const double missing = std::max(beyond(part.X_WP), beyond(X_WP_[step(i).part]));
+            least = std::min(least.value_or(missing), missing);
+        }
+        if (least && *least > kReachRounding)
+            fail(i, fmt::format("no hand reaches both this and the part's start: {:.4g} mm are missing", 1e3 * *least));
+    }
+
+    /// Parts that rest, and those that steps before this one put where they belong, are there.
+    void checkRoom(std::size_t i) {
+        const scene::PartSpec& part = scene_.parts[step(i).part];
+        const double slack = std::max(scene_.contact.tolerance, step(i).position_tolerance);
+        for (std::size_t other = 0; other < scene_.parts.size(); ++other) {
+            if (!isThere(other, i)) continue;
+            scene::PartSpec obstacle = scene_.parts[other];
+            obstacle.X_WP = X_WP_[other];
+            const double depth = depthAt(part, X_WP_[step(i).part], obstacle, geometries_);
+            if (depth > slack)
+                fail(i,
+                     fmt::format("there part {} stands {:.4g} mm deep in part {}, more than the tolerance of {:.4g} mm",
+                                 part.name, 1e3 * depth, obstacle.name, 1e3 * slack));
+        }
+    }
+
+    bool isThere(std::size_t part, std::size_t i) const {
+        if (!scene_.parts[part].moves()) return true;
+        for (std::size_t s = 0; s < before_.size(); ++s)
+            if ((before_[i] & scene::stepBit(s)) != 0 && step(s).part == part) return true;
+        return false;
+    }
+
+    void fail(std::size_t i, std::string message) {
+        const Node& place = *items_[i].find("position");
+        errors_.push_back(errorAt(place.place, "task.step.position", valueText(place), std::move(message)));
+    }
+
+    const std::vector<Node>& items_;
+    const plan::Condition& condition_;
+    const scene::SceneSpec& scene_;
+    std::span<const DeviceDescription> devices_;
+    PartGeometries& geometries_;
+    Errors& errors_;
+    std::vector<Pose> X_WP_;              // at the end of the step that puts it there
+    std::vector<scene::StepSet> before_;  // each step
+};
 
 }  // namespace
 
 void checkAssembly(const StudyTables& tables, const plan::Condition& condition,
                    std::span<const DeviceDescription> devices, PartGeometries& geometries, Errors& errors) {
-    const scene::SceneSpec& scene = condition.scene;
-    const auto& steps = scene.effects.pick.steps;
-    const auto& items = tables.task.find("step")->items;
-    std::vector<Pose> X_WP;
-    for (const scene::PartSpec& part : scene.parts) X_WP.push_back(part.X_WP);
-    std::vector<bool> rests;
-    for (const scene::PartSpec& part : scene.parts) rests.push_back(!part.moves());
-    std::vector<scene::StepSet> before(steps.size());
-    for (const std::size_t i : scene::orderOf(steps)) {
-        const scene::AssemblyStep& step = steps[i];
-        const scene::PartSpec& part = scene.parts[step.part];
-        const Node& place = *items[i].find("position");
-        const auto fail = [&](std::string message) {
-            errors.push_back(errorAt(place.place, "task.step.position", valueText(place), std::move(message)));
-        };
-        X_WP[step.part] = scene::goalOf(step, X_WP);
-        for (std::size_t other = 0; other < steps.size(); ++other)
-            if ((step.after & scene::stepBit(other)) != 0) before[i] |= scene::stepBit(other) | before[other];
-        const PartSurface* surface = geometries.of(part);
-        if (surface == nullptr) continue;
-        double least = std::numeric_limits<double>::infinity();
-        for (std::size_t hand = 0; hand < scene.handCount(); ++hand) {
-            const std::string& name = hand == 0 ? condition.device : condition.other_devices[hand - 1];
-            const auto device =
-                std::find_if(devices.begin(), devices.end(), [&](const auto& known) { return known.name == name; });
-            if (device == devices.end() || !scene.canPick(hand)) continue;
-            for (const Pose& X : {part.X_WP, X_WP[step.part]})
-                least = std::min(least, beyondReach(scene.hand(hand), *device, X, surface->longest()));
-        }
-        if (least < std::numeric_limits<double>::infinity() && least > kReachRounding)
-            fail(fmt::format("or its start is out of every hand's reach, by {:.4g} mm", 1e3 * least));
-        const double slack = std::max(scene.contact.tolerance, step.position_tolerance);
-        for (std::size_t other = 0; other < scene.parts.size(); ++other) {
-            const auto places = [&](std::size_t s) {
-                return steps[s].part == other && (before[i] & scene::stepBit(s));
-            };
-            bool is_there = rests[other];
-            for (std::size_t s = 0; s < steps.size(); ++s) is_there = is_there || places(s);
-            if (!is_there) continue;
-            scene::PartSpec obstacle = scene.parts[other];
-            obstacle.X_WP = X_WP[other];
-            const double depth = depthAt(part, X_WP[step.part], obstacle, geometries);
-            if (depth > slack)
-                fail(fmt::format("there part {} stands {:.4g} mm deep in part {}, more than the tolerance of {:.4g} mm",
-                                 part.name, 1e3 * depth, obstacle.name, 1e3 * slack));
-        }
-    }
+    StepsCheck(tables, condition, devices, geometries, errors).run();
 }
 
 }  // namespace passung::protocol

@@ -383,7 +383,7 @@ void checkBody(const StudyTables& tables, const plan::Condition& condition, cons
     const scene::ContactSpec& contact = condition.scene.contact;
     const bool stops = contact.method != scene::ContactMethod::Penalty && condition.scene.display_wrench;
     if (!stops || condition.timed_by != plan::TimedBy::Program) return;
-    if (std::holds_alternative<plan::AssemblyTask>(condition.task.form)) return;
+    if (plan::heldPart(condition.scene) == nullptr) return;  // of what is picked up the steps are looked at
     BodyCheck(tables, condition, device, geometries, errors).run();
 }
 

@@ -354,7 +354,8 @@ private:
                               if (root_.has("task")) condition.task = readTask(tables, &condition.scene, errors_);
                           });
         if (!content.parts_sound && root_.has("task")) readTask(tables, nullptr, errors_);
-        if (task && condition.scene.effects.picks() && !std::holds_alternative<plan::AssemblyTask>(condition.task.form))
+        const Node* type = tables.task.find("type");
+        if (condition.scene.effects.picks() && type != nullptr && type->text != "assembly")
             errors_.push_back(
                 errorAt(tables.scene.find("effects")->find("pick")->place, "effects.pick", "",
                         "is for task.type = \"assembly\": no other type judges parts that are picked up"));

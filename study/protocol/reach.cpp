@@ -304,7 +304,7 @@ private:
 
 void checkReach(const StudyTables& tables, const plan::Condition& condition, const DeviceDescription& device,
                 PartGeometries& geometries, Errors& errors, std::vector<std::string>& warnings) {
-    if (std::holds_alternative<plan::AssemblyTask>(condition.task.form)) return;
+    if (plan::heldPart(condition.scene) == nullptr) return;  // of what is picked up the steps are looked at
     ReachCheck(tables, condition, device, geometries, errors, warnings).run();
 }
 

@@ -461,7 +461,7 @@ TEST_F(Export, WhatAKilledExportLeftIsRemovedByTheNext) {
 TEST(StatusBits, TheCodebookExplainsEveryOne) {
     // Truth: closed form (core/base/tick_record.h)
     std::string formula;
-    for (const Column& column : sampleColumns(false))
+    for (const Column& column : sampleColumns({}))
         if (column.name == "status") formula = column.formula;
     EXPECT_NE(formula.find("; 65536 = engaged: "), std::string::npos) << formula;
     EXPECT_NE(formula.find(": 1 = bad device input, the last good pose was used; 2 = "), std::string::npos) << formula;
@@ -505,14 +505,19 @@ TEST_F(Export, ADamagedSampleLeavesNothingHalfWritten) {
 
 TEST(ExportSamples, ColumnsAndChannelsAgree) {
     // Truth: invariant: as many cells as columns
-    auto records = fake::withNavigation(3, fake::makeRecords(1, 2));
-    for (const bool navigation : {true, false}) {
+    using store::Extra;
+    const auto plain = fake::makeRecords(1, 2), moved = fake::withNavigation(3, plain),
+               held = fake::withBodies(3, plain);
+    const auto columnsOf = [](const std::vector<TickRecord>& records, const std::vector<Extra>& extras) {
         const fake::CsvFile samples = fake::readCsv(samplesCsv(records, {}));
-        EXPECT_EQ(samples.header.size(), sampleColumns(navigation).size());
+        EXPECT_EQ(samples.header.size(), sampleColumns(extras).size());
         EXPECT_EQ(samples.rows.size(), 2u);
-        for (TickRecord& record : records) record.navigation_scale = std::numeric_limits<float>::quiet_NaN();
-    }
-    EXPECT_EQ(sampleColumns(true).size(), sampleColumns(false).size() + 9);
+        return samples.header.size();
+    };
+    const std::size_t fewest = columnsOf(plain, {});
+    EXPECT_EQ(columnsOf(moved, {Extra::Navigation}), fewest + 9);
+    EXPECT_EQ(columnsOf(held, {Extra::Bodies}), fewest + 2);
+    EXPECT_EQ(columnsOf(fake::withBodies(3, moved), {Extra::Navigation, Extra::Bodies}), fewest + 11);
 }
 
 }  // namespace

@@ -54,6 +54,7 @@ TEST(TrialTypes, DeclareTheMeasuresThatOnlyTheirTrialsHave) {
         if (type.name == "contour_following") context.form = ContourFacts{{Vec3::Zero(), Vec3::UnitX()}, 0.1, 1.0};
         if (type.name == "free_placement") context.form = PlacementFacts{};
         if (type.name == "discrimination_pair") context.form = PairFacts{1};
+        if (type.name == "assembly") context.form = AssemblyFacts{{StepResult{}}};
         for (const auto& [name, value] : measure(records, context)) {
             const bool declared = std::find(possible.begin(), possible.end(), name) != possible.end();
             EXPECT_TRUE(declared || !value) << type.name << " has " << name;

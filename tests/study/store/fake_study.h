@@ -82,6 +82,16 @@ inline std::vector<TickRecord> makeRecords(std::uint64_t seed, std::size_t count
     return records;
 }
 
+/// The same of a scene whose parts are picked up.
+inline std::vector<TickRecord> withBodies(std::uint64_t seed, std::vector<TickRecord> records) {
+    Random random(seed);
+    for (TickRecord& r : records) {
+        r.held = static_cast<std::int32_t>(random.below(5)) - 1;
+        r.steps_done = random.next() >> 1;
+    }
+    return records;
+}
+
 /// The same of a scene with navigation.
 inline std::vector<TickRecord> withNavigation(std::uint64_t seed, std::vector<TickRecord> records) {
     Random random(seed);
@@ -107,7 +117,7 @@ inline bool sameStoredBits(const TickRecord& a, const TickRecord& b) {
            same(a.energy_J, b.energy_J) && same(a.hand_energy_J, b.hand_energy_J) &&
            same(a.proxy_gap_m, b.proxy_gap_m) && a.navigation_clutched == b.navigation_clutched &&
            same(a.navigation_scale, b.navigation_scale) && same(a.navigation_offset_m, b.navigation_offset_m) &&
-           same(a.navigation_quaternion, b.navigation_quaternion);
+           same(a.navigation_quaternion, b.navigation_quaternion) && a.held == b.held && a.steps_done == b.steps_done;
 }
 
 inline bool sameStoredBits(const std::vector<TickRecord>& a, const std::vector<TickRecord>& b) {
@@ -225,7 +235,8 @@ inline Result<Done> writeAttempt(store::SessionWriter& writer, std::int64_t tria
 inline void makeOlderThanHashes(const std::string& path) {
     store::Database(path, store::OpenMode::ReadWrite)
         .execute(
-            "ALTER TABLE contact_energy DROP COLUMN hand; DROP TABLE exact_overlap; DROP TABLE assembly_step; ALTER TABLE timing DROP COLUMN "
+            "ALTER TABLE contact_energy DROP COLUMN hand; DROP TABLE exact_overlap; DROP TABLE assembly_step; ALTER "
+            "TABLE timing DROP COLUMN "
             "processor_mean_us; ALTER TABLE timing DROP "
             "COLUMN "
             "processor_p99_us; ALTER TABLE timing DROP COLUMN processor_p999_us; ALTER TABLE timing DROP COLUMN "

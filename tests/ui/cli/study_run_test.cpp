@@ -353,7 +353,7 @@ TEST(Navigation, IsRecordedExportedAndReplayedWhereAConditionHasIt) {
     for (const store::AttemptRow& attempt : require(reader.attempts())) {
         const auto records = require(reader.records(attempt.attempt_id));
         const bool drifts = attempt.condition == "fair";
-        EXPECT_EQ(store::haveNavigation(records), drifts) << attempt.condition;
+        EXPECT_EQ(store::haveExtra(store::Extra::Navigation, records), drifts) << attempt.condition;
         if (!drifts) continue;
         ++navigated;
         double moved = 0.0;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include <cmath>
 #include <limits>
 
@@ -56,21 +58,29 @@ TEST(SampleCodec, ReadsTimesFromBeforeTheProcessorsWasMeasured) {
     }
 }
 
-TEST(SampleCodec, KeepsNavigationOutOfTheTicksAndInItsOwnStream) {
-    // Truth: invariant: decoding inverts encoding, by tick; ticks of scenes without navigation have none to keep.
-    const auto without = fake::makeRecords(1, 50), records = fake::withNavigation(2, without);
-    EXPECT_FALSE(haveNavigation(without));
-    EXPECT_TRUE(haveNavigation(records));
-    std::vector<TickRecord> back;
-    ASSERT_TRUE(decodeTicks(encodeTicks(records), back));
-    EXPECT_TRUE(fake::sameStoredBits(without, back));
-    const auto unpacked = unpackNavigation(packNavigation(encodeNavigation(records)), encodingText());
-    ASSERT_TRUE(unpacked);
-    ASSERT_TRUE(decodeNavigation(*unpacked, back));
-    EXPECT_TRUE(fake::sameStoredBits(records, back));
-    EXPECT_TRUE(isNavigationStream(navigationStreamName(0)) && isNavigationStream(navigationStreamName(3)));
-    EXPECT_EQ(navigationStreamName(1), "navigation_hand_2");
-    EXPECT_FALSE(isNavigationStream("tick_timing") || isTickStream(navigationStreamName(1)));
+TEST(SampleCodec, KeepsWhatFewScenesHaveOutOfTheTicksAndInStreamsOfItsOwn) {
+    // Truth: invariant: decoding inverts encoding, by tick; ticks of other scenes have nothing to keep.
+    const auto plain = fake::makeRecords(1, 50);
+    const std::array of_extra{fake::withNavigation(2, plain), fake::withBodies(2, plain)};
+    for (const Extra extra : kExtras) {
+        const auto& records = of_extra[static_cast<std::size_t>(extra)];
+        EXPECT_FALSE(haveExtra(extra, plain));
+        EXPECT_TRUE(haveExtra(extra, records));
+        std::vector<TickRecord> back;
+        ASSERT_TRUE(decodeTicks(encodeTicks(records), back));
+        EXPECT_TRUE(fake::sameStoredBits(plain, back));
+        const auto unpacked = unpackExtra(extra, packExtra(extra, encodeExtra(extra, records)), encodingText());
+        ASSERT_TRUE(unpacked);
+        ASSERT_TRUE(decodeExtra(extra, *unpacked, back));
+        EXPECT_TRUE(fake::sameStoredBits(records, back));
+        for (const std::size_t hand : {0u, 3u}) {
+            EXPECT_EQ(extraNamed(extraStreamName(extra, hand)), extra);
+            EXPECT_FALSE(isTickStream(extraStreamName(extra, hand)));
+        }
+    }
+    EXPECT_EQ(extraStreamName(Extra::Navigation, 1), "navigation_hand_2");
+    EXPECT_EQ(extraStreamName(Extra::Bodies, 0), "bodies");
+    EXPECT_FALSE(extraNamed("tick_timing") || extraNamed("tick_hand_2"));
 }
 
 TEST(SampleCodec, FindsEveryFlippedBit) {

@@ -284,7 +284,7 @@ TEST(Store, KeepsTheTicksOfEachHandInAStreamOfItsOwn) {
     // Truth: invariant, bit by bit; and a planted fault in the second hand's samples alone.
     const fake::TempFolder folder;
     const std::string path = folder / "s.db";
-    const auto first = fake::makeRecords(1, 2500);
+    const auto first = fake::withBodies(4, fake::makeRecords(1, 2500));
     const auto second = fake::withNavigation(3, fake::makeRecords(2, 2400));
     {
         auto store = fake::openStore(path);
@@ -305,8 +305,8 @@ TEST(Store, KeepsTheTicksOfEachHandInAStreamOfItsOwn) {
     }
     const Database database(path, OpenMode::ReadWrite);
     EXPECT_EQ(rows(database, "SELECT stream FROM stream ORDER BY stream_id"),
-              "tick\ntick_hand_2\ntick_timing\nnavigation_hand_2\n")
-        << "navigation only of the hand that has it";
+              "tick\ntick_hand_2\ntick_timing\nbodies\nnavigation_hand_2\n")
+        << "bodies and navigation only of the hand that has them";
     database.execute(
         "UPDATE sample_chunk SET data = CAST(substr(data, 1, 500) || x'5A' || substr(data, 502) AS BLOB) WHERE "
         "stream_id=(SELECT stream_id FROM stream WHERE stream='tick_hand_2')");
