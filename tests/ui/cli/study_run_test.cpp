@@ -378,9 +378,9 @@ TEST(Navigation, IsRecordedExportedAndReplayedWhereAConditionHasIt) {
                                   found.integer(2),
                                   static_cast<std::uint32_t>(found.integer(4)),
                                   {found.blob(3).begin(), found.blob(3).end()}};
-        store::Chunk changed = require(store::unpackNavigation(stored, store::encodingText()));
+        store::Chunk changed = require(store::unpackExtra(store::Extra::Navigation, stored, store::encodingText()));
         changed.data[static_cast<std::size_t>(4 * changed.count + 4 * 300)] ^= std::byte{1};  // the scale of tick 300
-        const store::Chunk packed = store::packNavigation(changed);
+        const store::Chunk packed = store::packExtra(store::Extra::Navigation, changed);
         found.reset();
         database.prepare("UPDATE sample_chunk SET data=?, crc32=? WHERE rowid=?")
             .bind(std::span<const std::byte>(packed.data), packed.crc32, row)
