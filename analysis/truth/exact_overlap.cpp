@@ -418,14 +418,27 @@ std::shared_ptr<const OverlapBody> OverlapBodies::of(const scene::Part& part) {
 }
 
 SceneOverlap::SceneOverlap(const scene::Scene& scene, OverlapBodies& bodies) : held_(scene.held) {
-    for (std::size_t i = 0; i < scene.parts.size(); ++i)
-        parts_.push_back({bodies.of(*scene.parts[i]), scene.spec.parts[i].X_WP});
+    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+        geometry::Bounds box = geometry::boundsOf(scene.parts[i]->mesh);
+        box.low.array() -= scene.parts[i]->chord_error;
+        box.high.array() += scene.parts[i]->chord_error;
+        parts_.push_back({bodies.of(*scene.parts[i]), box, scene.spec.parts[i].X_WP});
+    }
+}
+
+bool SceneOverlap::areApart(const Part& a, const Pose& X_WA, const Part& b, const Pose& X_WB) {
+    const auto beyond = [](const Part& ball, const Pose& X_WBall, const Part& box, const Pose& X_WBox) {
+        const Vec3 centre = X_WBox.inverse() * (X_WBall * Vec3(0.5 * (ball.box.low + ball.box.high)));
+        const Vec3 out = (box.box.low - centre).cwiseMax(centre - box.box.high).cwiseMax(0.0);
+        return out.norm() > 0.5 * (ball.box.high - ball.box.low).norm();
+    };
+    return beyond(a, X_WA, b, X_WB) || beyond(b, X_WB, a, X_WA);
 }
 
 Overlap SceneOverlap::at(const Pose& X_WG, const OverlapEffort& search) const {
     Overlap deepest;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-        if (i == held_) continue;
+        if (i == held_ || areApart(parts_[held_], X_WG, parts_[i], parts_[i].X_W)) continue;
         OverlapEffort deeper = search;
         deeper.ignore = std::max(search.ignore, deepest.depth);
         const Overlap found = overlapOf(*parts_[held_].body, X_WG, *parts_[i].body, parts_[i].X_W, deeper);

@@ -117,8 +117,12 @@ public:
 private:
     struct Part {
         std::shared_ptr<const OverlapBody> body;
+        geometry::Bounds box;  // part frame, what the mesh is off the surface included
         Pose X_W;
     };
+    /// By a ball about one part's box and the box of the other, either way.
+    static bool areApart(const Part& a, const Pose& X_WA, const Part& b, const Pose& X_WB);
+
     std::vector<Part> parts_;
     std::size_t held_;
 };

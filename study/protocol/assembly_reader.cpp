@@ -131,6 +131,10 @@ plan::AssemblyTask readAssembly(const TableReader& read, const StudyTables& tabl
             pick.undo_button == navigation.clutch.button || pick.undo_button == navigation.second_scale.button;
         if (pick.undo_button > 0 && taken) read.fail("undo_button", "is another effect's");
     }
+    if (pick.locks)
+        errors.push_back(errorAt(tables.scene.find("effects")->find("pick")->find("let_go")->place,
+                                 "scene.effects.pick.let_go", "\"lock\"",
+                                 "must be \"leave\" in an assembly: its steps lock what is where it belongs"));
     if (read.items("step").empty()) {
         read.fail("step", "needs at least one step");
         return assembly;
@@ -166,8 +170,7 @@ public:
           scene_(condition.scene),
           devices_(devices),
           geometries_(geometries),
-          errors_(errors),
-          before_(scene_.effects.pick.steps.size()) {
+          errors_(errors) {
         for (const scene::PartSpec& part : scene_.parts) X_WP_.push_back(part.X_WP);
     }
 
@@ -175,11 +178,9 @@ public:
         const auto& steps = scene_.effects.pick.steps;
         for (const std::size_t i : scene::orderOf(steps)) {
             X_WP_[steps[i].part] = scene::goalOf(steps[i], X_WP_);
-            for (std::size_t other = 0; other < steps.size(); ++other)
-                if ((steps[i].after & scene::stepBit(other)) != 0) before_[i] |= scene::stepBit(other) | before_[other];
             checkReach(i);
-            checkRoom(i);
         }
+        for (std::size_t i = 0; i < steps.size(); ++i) checkRoom(i);
     }
 
 private:
@@ -205,7 +206,7 @@ private:
             fail(i, fmt::format("no hand reaches both this and the part's start: {:.4g} mm are missing", 1e3 * *least));
     }
 
-    /// Parts that rest, and those that steps before this one put where they belong, are there.
+    /// At success all parts with a step are where they belong, beside those that rest.
     void checkRoom(std::size_t i) {
         const scene::PartSpec& part = scene_.parts[step(i).part];
         const double slack = std::max(scene_.contact.tolerance, step(i).position_tolerance);
@@ -221,11 +222,12 @@ private:
         }
     }
 
+    /// Once for each pair of steps.
     bool isThere(std::size_t part, std::size_t i) const {
         if (!scene_.parts[part].moves()) return true;
-        for (std::size_t s = 0; s < before_.size(); ++s)
-            if ((before_[i] & scene::stepBit(s)) != 0 && step(s).part == part) return true;
-        return false;
+        const auto& steps = scene_.effects.pick.steps;
+        return std::any_of(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(i),
+                           [part](const scene::AssemblyStep& other) { return other.part == part; });
     }
 
     void fail(std::size_t i, std::string message) {
@@ -239,8 +241,7 @@ private:
     std::span<const DeviceDescription> devices_;
     PartGeometries& geometries_;
     Errors& errors_;
-    std::vector<Pose> X_WP_;              // at the end of the step that puts it there
-    std::vector<scene::StepSet> before_;  // each step
+    std::vector<Pose> X_WP_;  // at the end of the step that puts it there
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ plan::AssemblyTask readAssembly(const TableReader& read, const StudyTables& tabl
                                 scene::SceneSpec& scene, Errors& errors);
 
 /// Adds an error for every step whose part cannot be there: its goal is out of the hands' reach, or overlaps a part
-/// that rests, or one that a step before it puts where it belongs. @pre the condition's trial is an assembly
+/// that rests, or another step's at its goal. @pre the condition's trial is an assembly
 void checkAssembly(const StudyTables& tables, const plan::Condition& condition,
                    std::span<const DeviceDescription> devices, PartGeometries& geometries, Errors& errors);
 

@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/digest.h"
 #include "core/base/regular_file.h"
@@ -48,6 +52,26 @@ void printShapes(const scene::SceneSpec& spec) {
     }
 }
 
+/// The steps of an assembly in an order in which they may be done, and the states that each goes through.
+void printSteps(const scene::SceneSpec& spec) {
+    const auto& steps = spec.effects.pick.steps;
+    if (steps.empty()) return;
+    const auto partOf = [&](std::size_t i) -> const std::string& { return spec.parts[steps[i].part].name; };
+    const char* head = "steps";
+    for (const std::size_t i : scene::orderOf(steps)) {
+        const scene::AssemblyStep& step = steps[i];
+        std::vector<std::string> before;
+        for (std::size_t other = 0; other < steps.size(); ++other)
+            if ((step.after & scene::stepBit(other)) != 0) before.push_back(partOf(other));
+        const bool world = step.into == scene::AssemblyStep::kWorld;
+        fmt::print("  {:<22}{}{}: within {:.4g} mm and {:.3g}°{}{}\n", std::exchange(head, ""), partOf(i),
+                   world ? "" : " into " + spec.parts[step.into].name, 1e3 * step.position_tolerance,
+                   step.angle_tolerance * 180.0 / std::numbers::pi, step.folds == 0 ? ", turned anyhow" : "",
+                   before.empty() ? "" : fmt::format(", after {}", fmt::join(before, ", ")));
+    }
+    fmt::print("  {:<22}idle, picked, carried, near, inserted; locked once it is let go there\n", "states of a step");
+}
+
 /// Which hand holds what, where there are several or they pick parts up.
 void printHands(const scene::SceneSpec& spec) {
     if (spec.handCount() < 2 && !spec.effects.picks()) return;
@@ -65,6 +89,7 @@ void printHands(const scene::SceneSpec& spec) {
                fmt::join(names, ", "), 1e3 * pick.reach, pick.button,
                pick.on_press ? "at each press" : "while it is down",
                pick.locks ? "stays for good" : "can be picked up again");
+    printSteps(spec);
 }
 
 /// What a scene does not cost, and why.

@@ -16,87 +16,12 @@
 namespace passung::test {
 namespace {
 
-/// A pin into a bore, a block onto a plate, a lid onto the block; 1 mm of tolerance for the pin, 3 mm for the others.
-const std::string kStudy = R"(passung = 1
-
-[study]
-name = "three_parts"
-version = "1"
-seed = 1
-participants = 2
-
-[scene]
-unit = "mm"
-
-[[scene.part]]
-name = "base"
-shape = { kind = "bore_plate", width = 80, depth = 60, height = 20, bore_diameter = 10.4, bore_depth = 15, chamfer = 0.5 }
-
-[[scene.part]]
-name = "pin"
-pickable = true
-shape = { kind = "peg", diameter = 10, length = 40, chamfer = 0.5 }
-pose = { position = [60, 40, 0] }
-
-[[scene.part]]
-name = "block"
-pickable = true
-shape = { kind = "box", width = 20, depth = 20, height = 10 }
-pose = { position = [-60, 30, 10] }
-
-[[scene.part]]
-name = "lid"
-pickable = true
-shape = { kind = "box", width = 30, depth = 10, height = 8 }
-pose = { position = [-60, -30, 10] }
-
-[scene.contact]
-method = "god_object"
-
-[scene.device]
-preset = "sigma7"
-
-[scene.start_gate]
-pose = { position = [0, 0, 60] }
-position_tolerance_mm = 5
-angle_tolerance_deg = 10
-hold_ms = 200
-
-[scene.effects.pick]
-reach_mm = 5
-
-[task]
-type = "assembly"
-timeout_s = 120
-
-[[task.step]]
-part = "pin"
-into = "base"
-position = [0, 0, -14.5]
-insertion_mm = 14.5
-symmetry = 0
-
-[[task.step]]
-part = "block"
-position = [-25, 15, 5.5]
-position_tolerance_mm = 3
-
-[[task.step]]
-part = "lid"
-into = "block"
-position = [0, 0, 9.5]
-position_tolerance_mm = 3
-after = ["block"]
-
-[[factor]]
-name = "stiffness"
-key = "contact.stiffness_N_per_m"
-levels = ["0.5 max", "max"]
-
-[[block]]
-name = "main"
-order = "williams"
-)";
+/// The study of the page: a pin into a bore, 1 mm of tolerance; a block onto a plate and a lid onto the block, 3 mm.
+std::string studyOfThePage() {
+    const std::string page = readText(PASSUNG_SOURCE_DIR "/protocols/ASSEMBLY.md"), fence = "```toml\n";
+    const std::size_t begin = page.find(fence) + fence.size();
+    return page.substr(begin, page.find("```", begin) - begin);
+}
 
 /// Where a part was left, by the samples alone: the proxy in the last row with it in the hand.
 std::map<int, Vec3> leftAt(const std::vector<TickRecord>& records) {
@@ -122,9 +47,9 @@ protected:
 };
 
 TEST_F(AssemblyStudy, IsDoneByASimulatedPersonReplaysAndTellsOfEachStep) {
-    // Truth: where parts were left, from the recorded poses alone, against the goals of the text above; the tables say
+    // Truth: where parts were left, from the recorded poses alone, against the goals of the study; the tables say
     // the same. All bits again from the recorded inputs.
-    run(kStudy);
+    run(studyOfThePage());
     auto reader = store::StoreReader::open(folder_ / "study.db");
     ASSERT_TRUE(reader);
     const auto attempts = reader->attempts();
@@ -160,7 +85,7 @@ TEST_F(AssemblyStudy, IsDoneByASimulatedPersonReplaysAndTellsOfEachStep) {
 
 TEST_F(AssemblyStudy, ThatCannotBeDoneIsNotDone) {
     // Truth: closed form: a pin of 10 mm does not go into a bore of 9.9 mm.
-    std::string text = kStudy;
+    std::string text = studyOfThePage();
     const std::string bore = "bore_diameter = 10.4", symmetric = "timeout_s = 120";
     text.replace(text.find(bore), bore.size(), "bore_diameter = 9.9");
     text.replace(text.find(symmetric), symmetric.size(), "timeout_s = 40");
@@ -178,9 +103,26 @@ TEST_F(AssemblyStudy, ThatCannotBeDoneIsNotDone) {
     }
 }
 
+TEST_F(AssemblyStudy, TheShippedGearboxIsPutTogetherByTwoHands) {
+    // Truth: the rule of success, and exact geometry: nothing that was shown overlaps. One participant of the shipped
+    // study.
+    run(readText(PASSUNG_SOURCE_DIR "/protocols/gearbox_assembly/study.toml"));
+    const fake::CsvFile trials = table("trials.csv");
+    ASSERT_GE(trials.rows.size(), 4u);
+    for (std::size_t i = 0; i < trials.rows.size(); ++i) {
+        EXPECT_EQ(trials.at(i, "outcome"), "success");
+        EXPECT_LE(std::stod(trials.at(i, "max_exact_overlap_m")), 1e-5);
+    }
+    bool other_hand = false;
+    const fake::CsvFile steps = table("assembly_steps.csv");
+    for (std::size_t i = 0; i < steps.rows.size(); ++i) other_hand = other_hand || std::stoi(steps.at(i, "hands")) > 1;
+    EXPECT_TRUE(other_hand);
+    EXPECT_EQ(program({"replay", "study.db", "--attempt", "1"}).exit_code, 0);
+}
+
 TEST_F(AssemblyStudy, OfWhichARecordedPartIsFalsifiedDoesNotReplay) {
     // Truth: a planted fault: one byte of the stream that tells which part is held.
-    run(kStudy);
+    run(studyOfThePage());
     auto reader = store::StoreReader::open(folder_ / "study.db");
     ASSERT_TRUE(reader);
     auto records = reader->records(1);
