@@ -21,10 +21,11 @@ struct TickFrame : Parts<Reading, HandSample, MappingRecord, AreaLoad, ContactRe
 
 /// What one tick gives back: exact values, before they are rounded into a record.
 struct TickOutput {
-    Wrench F_D_B;                   // to be commanded
-    TickFrame frame;                // everything else
-    Pose X_WG;                      // proxy of the held part
-    std::int32_t held = kNoPart;    // which part that is, in the order of the scene; kPartNotTold: the scene picks none up
+    Wrench F_D_B;     // to be commanded
+    TickFrame frame;  // everything else
+    Pose X_WG;        // proxy of the held part
+    std::int32_t held =
+        kNoPart;  // which part that is, in the order of the scene; kPartNotTold: the scene picks none up
     scene::StepSet steps_done = 0;  // of an assembly, as the tick began
 };
 

@@ -63,7 +63,7 @@ struct AskedStep {
 /// Hands pick parts up and put each where it belongs; success once all steps are done.
 struct AssemblyTask {
     std::vector<AskedStep> steps;  // in the order of the scene's
-    bool hints = true;                // the goals of the steps that may be done next are drawn
+    bool hints = true;             // the goals of the steps that may be done next are drawn
 };
 
 /// What a trial asks for; `form` says the type of the trial.

@@ -244,7 +244,8 @@ TEST_F(Carrying, TwoHundredPartsAreFastEnough) {
         tick(condition.scene.start_gate.X_WH, kNoPart);
         const double rate = picturesPerSecond();
         std::printf(
-            "200 parts, 1280 x 720, %s shadows, %d samples a pixel, scale %.2f: %.1f pictures a second; 6 parts: %.1f\n",
+            "200 parts, 1280 x 720, %s shadows, %d samples a pixel, scale %.2f: %.1f pictures a second; 6 parts: "
+            "%.1f\n",
             quality.shadows ? "with" : "without", quality.samples, quality.scale, rate, of_few);
         fastest = std::max(fastest, rate);
     }
