@@ -101,7 +101,7 @@ void takeBack(const TickModel& model, TickState& state, std::size_t step) noexce
     if ((assembly.done & scene::stepBit(step)) == 0) return;
     assembly.done &= ~scene::stepBit(step);
     const auto end = assembly.sequence.begin() + static_cast<std::ptrdiff_t>(assembly.count--);
-    std::remove(assembly.sequence.begin(), end, static_cast<std::uint8_t>(step));
+    static_cast<void>(std::remove(assembly.sequence.begin(), end, static_cast<std::uint8_t>(step)));
     state.locked[model.pick.steps[step].part] = 0;
 }
 

@@ -15,6 +15,7 @@ constexpr double kTolerance = 2e-6;                   // of a depth [m]
 constexpr double kShare = 0.03;                       // of a depth besides
 constexpr double kIgnored = measures::kLeastOverlap;  // of a depth [m]
 constexpr std::size_t kMostPieces = 800'000;          // of a trial: a fifth of a second
+constexpr std::size_t kMostOfAssembly = 16'000'000;   // of one that takes minutes, among many parts
 constexpr std::size_t kMostPiecesOfTick = 20'000;     // of surfaces
 
 bool areEngaged(const TickRecord& record, std::span<const TickRecord* const> others) {
@@ -82,7 +83,8 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
     std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) {
         return 2 * a->largest_depth + a->largest_force > 2 * b->largest_depth + b->largest_force;
     });
-    std::size_t left = kMostPieces;
+    const bool picks = scenes.scenes.front().spec.effects.picks();
+    std::size_t left = picks ? kMostOfAssembly : kMostPieces;
     for (measures::TickOverlap* tick : order) {
         const Shown& there = shown.at(tick->tick);
         if (there.held == there.X_WP.size()) continue;  // an empty hand touches nothing
