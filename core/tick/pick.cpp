@@ -95,7 +95,7 @@ void placePart(const HandModel& model, const std::vector<Pose>& X_WP, HandState&
 }
 
 /// Of the done steps this one is done no more; it is free to be done again once its part is let go anew.
-void takeBack(const TickModel& model, TickState& state, std::size_t step) noexcept {
+void undoStep(const TickModel& model, TickState& state, std::size_t step) noexcept {
     AssemblyState& assembly = state.assembly;
     assembly.laid &= ~scene::stepBit(step);
     if ((assembly.done & scene::stepBit(step)) == 0) return;
@@ -112,7 +112,7 @@ void settleSteps(const TickModel& model, TickState& state) noexcept {
     for (const Hold& hold : state.holds)
         for (std::size_t i = 0; i < steps.size(); ++i) {
             if (steps[i].part == hold.let_go) assembly.laid |= scene::stepBit(i);
-            if (steps[i].part == hold.body) takeBack(model, state, i);
+            if (steps[i].part == hold.body) undoStep(model, state, i);
         }
     for (const std::size_t i : model.step_order) {
         const scene::StepSet step = scene::stepBit(i);
@@ -218,7 +218,7 @@ void pickAndLetGo(const TickModel& model, TickState& state, std::span<const Devi
         hold.undo_down = isDown(readings[i], model.pick.undo_button);
         if (!knows || !state.hands[i].engaged) continue;
         if (hold.undo_down && !undo_was_down && state.assembly.count > 0)
-            takeBack(model, state, state.assembly.sequence[state.assembly.count - 1]);
+            undoStep(model, state, state.assembly.sequence[state.assembly.count - 1]);
         const bool goes_down = hold.down && !was_down, goes_up = was_down && !hold.down;
         ClosingHand hand(model, state, i);
         if (hold.body != kNoBody) {

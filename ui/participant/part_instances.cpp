@@ -35,7 +35,7 @@ const std::vector<PartInstance>& PartInstances::placed() const {
 
 QByteArray PartInstances::getInstanceBuffer(int* count) {
     QByteArray table;
-    table.reserve(static_cast<qsizetype>(placed().size() * sizeof(InstanceTableEntry)));
+    table.reserve(static_cast<qsizetype>(placed().size()) * static_cast<qsizetype>(sizeof(InstanceTableEntry)));
     for (const PartInstance& one : placed()) {
         const auto place = static_cast<std::size_t>(flat_ ? one.part : one.look);
         const QColor colour = place < colours_.size() ? colours_[place] : QColor(Qt::white);
