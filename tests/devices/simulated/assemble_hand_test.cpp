@@ -137,7 +137,7 @@ public:
     DeviceReading read() noexcept override {
         if (!trial_.guarded) return device_.read();
         support::RtGuard guard;
-        const DeviceReading reading = device_.read();
+        DeviceReading reading = device_.read();
         violations += guard.violations();
         return reading;
     }

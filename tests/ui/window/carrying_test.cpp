@@ -227,7 +227,8 @@ TEST_F(Carrying, TwoHundredPartsAreFastEnough) {
     parts.resize(1);
     parts[0].geometry = shape::Shape(shape::Box{0.6, 0.4, 0.01});
     for (int i = 0; i < 199; ++i) {
-        const Pose X = at(-0.27 + 0.028 * (i % 20), -0.16 + 0.034 * (i / 20), 0.0125);
+        const int row = i / 20;
+        const Pose X = at(-0.27 + 0.028 * (i % 20), -0.16 + 0.034 * row, 0.0125);
         const shape::Shape form =
             i % 2 == 0 ? shape::Shape(shape::Cylinder{0.016, 0.025}) : shape::Shape(shape::Box{0.016, 0.016, 0.025});
         parts.push_back({.name = "part " + std::to_string(i), .geometry = form, .X_WP = X, .pickable = true});
