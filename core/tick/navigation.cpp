@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/tick/buttons.h"
 #include "core/tick/output_stage.h"
 
 namespace passung::tick {
@@ -9,10 +10,6 @@ namespace passung::tick {
 namespace {
 
 constexpr double kNoWay = 1e-12;  // [m]: what rounding leaves of none
-
-bool isPressed(const Reading& device, int button) noexcept {
-    return button > 0 && (device.reading.buttons >> (button - 1) & 1u) != 0;
-}
 
 /// X_BI of (1).
 Pose imageOf(const Offset& offset, const Pose& X_BD) noexcept {
@@ -56,7 +53,7 @@ Pose heldPose(const HandModel& model, const Grip& grip, const Pose& X_BD, HandMa
 /// The scale that is asked for.
 double wantedScale(const HandModel& model, const Reading& device) noexcept {
     const scene::SecondScale& second = model.effects.navigation.second_scale;
-    return isPressed(device, second.button) ? second.scale : model.registration.scale;
+    return isDown(device.reading, second.button) ? second.scale : model.registration.scale;
 }
 
 void changeScale(double scale, const Pose& X_BD_last, Offset& offset) noexcept {
@@ -80,7 +77,7 @@ Pose followSample(const HandModel& model, const Reading& device, const Grip& gri
     const scene::Navigation& navigation = model.effects.navigation;
     Clutched& clutch = mapping.clutch;
     const double fade = static_cast<double>(hand.sample_periods) / kGripTicks;
-    const bool pressed = isPressed(device, navigation.clutch.button),
+    const bool pressed = isDown(device.reading, navigation.clutch.button),
                yields = account.taken_in < mapping.sample.energy - kYield;
     if ((clutch.held || pressed) && yields) clutch.grip = 0.0;
     if (clutch.held) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/single_precision.h"
+#include "core/tick/buttons.h"
 #include "core/tick/tick_model.h"
 #include "core/tick/tick_state.h"
 
@@ -56,11 +57,6 @@ Pose roundedToSingle(const Pose& X) noexcept {
                roundedToFloat(X.p)};
     there.q.normalize();
     return there;
-}
-
-/// `button` from 1; 0 is never down.
-bool isDown(const DeviceReading& reading, int button) noexcept {
-    return button > 0 && (reading.buttons >> (button - 1) & 1u) != 0;
 }
 
 /// What the hand felt and did with another part, or none, tells nothing of what it does now.

@@ -21,9 +21,10 @@ const char* stepStateName(StepState state) {
     return kNames[static_cast<std::size_t>(state)];
 }
 
-AssemblyWatch::AssemblyWatch(std::vector<scene::AssemblyStep> steps, const scene::SceneSpec& spec)
-    : steps_(std::move(steps)),
+AssemblyWatch::AssemblyWatch(const scene::SceneSpec& spec)
+    : steps_(spec.effects.pick.steps),
       parts_(spec),
+      before_(parts_),
       states_(steps_.size(), StepState::Idle),
       taken_at_(steps_.size(), Vec3::Zero()),
       results_(steps_.size()) {}
@@ -48,18 +49,19 @@ void AssemblyWatch::enter(std::size_t step, StepState state, std::size_t hand, s
 
 void AssemblyWatch::follow(std::span<const TickRecord* const> hands, std::int64_t time,
                            std::vector<StepChange>& changes) {
-    const std::int64_t periods = time_ ? time - *time_ : 1;
+    const bool began = time_.has_value();
+    const std::int64_t periods = began ? time - *time_ : 1;
     time_ = time;
-    const PartsWatch before = parts_;
+    before_ = parts_;
     parts_.follow(hands);
     for (std::size_t i = 0; i < hands.size(); ++i) {
         const auto part = parts_.heldBy(i);
         const auto step = part ? stepOf(*part) : std::nullopt;
         if (!step || hands[i] == nullptr) continue;
-        const Vec3& from = before.poses()[*part].p;
-        if (before.heldBy(i) != part || !began_) {
+        const Vec3& from = before_.poses()[*part].p;
+        if (before_.heldBy(i) != part || !began) {
             results_[*step].hands |= 1u << i;
-            if (!before.isHeld(*part) || !began_) take(*step, i, from, time, changes);
+            if (!before_.isHeld(*part) || !began) take(*step, i, from, time, changes);
         }
         results_[*step].peak_force = std::max(results_[*step].peak_force, forceOn(*hands[i]));
         bool first = true;  // of two hands on one part
@@ -67,9 +69,8 @@ void AssemblyWatch::follow(std::span<const TickRecord* const> hands, std::int64_
         if (first) carry(*step, i, from, periods, changes);
     }
     for (std::size_t i = 0; i < hands.size(); ++i)
-        if (const auto left = before.heldBy(i); left && !parts_.isHeld(*left))
+        if (const auto left = before_.heldBy(i); left && !parts_.isHeld(*left))
             if (const auto step = stepOf(*left)) layDown(*step, i, changes);
-    began_ = true;
     for (const TickRecord* record : hands)
         if (record != nullptr) return settle(record->steps_done, time, changes);
 }

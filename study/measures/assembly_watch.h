@@ -39,7 +39,8 @@ struct StepChange {
 /// and not back.
 class AssemblyWatch {
 public:
-    AssemblyWatch(std::vector<scene::AssemblyStep> steps, const scene::SceneSpec& spec);
+    /// Of the steps of this scene.
+    explicit AssemblyWatch(const scene::SceneSpec& spec);
 
     /// `hands`: each hand's record of a tick, in the order of the scene; of a hand that is not told nullptr. `time`: of
     /// the tick [haptic periods, from any origin]. Appends what happened.
@@ -62,13 +63,12 @@ private:
     void enter(std::size_t step, StepState state, std::size_t hand, std::vector<StepChange>& changes);
 
     std::vector<scene::AssemblyStep> steps_;
-    PartsWatch parts_;
+    PartsWatch parts_, before_;  // after the newest tick and the one before
     std::vector<StepState> states_;
     std::vector<Vec3> taken_at_;  // of each step's part
     std::vector<StepResult> results_;
     std::uint64_t done_ = 0;
-    std::optional<std::int64_t> time_;
-    bool began_ = false;
+    std::optional<std::int64_t> time_;  // of the newest tick
 };
 
 }  // namespace passung::measures

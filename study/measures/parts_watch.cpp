@@ -6,15 +6,6 @@
 
 namespace passung::measures {
 
-namespace {
-
-Pose proxyPose(const TickRecord& record) {
-    const auto& q = record.proxy_quaternion;
-    return {Quat(q[0], q[1], q[2], q[3]).normalized(), proxyPosition(record)};
-}
-
-}  // namespace
-
 PartsWatch::PartsWatch(const scene::SceneSpec& spec) {
     for (const scene::PartSpec& part : spec.parts) X_WP_.push_back(part.X_WP);
     for (std::size_t hand = 0; hand < spec.handCount(); ++hand)

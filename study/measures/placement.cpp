@@ -1,30 +1,19 @@
 #include "study/measures/placement.h"
 
-#include <cmath>
-
 #include "study/measures/tick_facts.h"
 #include "study/measures/type_measures.h"
 
 namespace passung::measures {
 
-PlacementError placementError(const TickRecord& record, const Pose& X_WGoal, bool round) {
+scene::GoalError placementError(const TickRecord& record, const Pose& X_WGoal, bool round) {
     const auto& q = record.proxy_quaternion;
-    const Quat turn = X_WGoal.q.conjugate() * Quat(q[0], q[1], q[2], q[3]);
-    PlacementError error;
-    error.position = (proxyPosition(record) - X_WGoal.p).norm();
-    if (round) {
-        const Vec3 axis = turn * Vec3::UnitZ();
-        error.angle = std::atan2(std::hypot(axis.x(), axis.y()), axis.z());
-    } else {
-        error.angle = 2.0 * std::atan2(turn.vec().norm(), std::abs(turn.w()));
-    }
-    return error;
+    return scene::goalError({Quat(q[0], q[1], q[2], q[3]), proxyPosition(record)}, X_WGoal, round ? 0 : 1);
 }
 
 namespace {
 
 /// At the confirmation; nothing without one.
-std::optional<PlacementError> errorOf(const Trial& trial) {
+std::optional<scene::GoalError> errorOf(const Trial& trial) {
     const auto* facts = std::get_if<PlacementFacts>(&trial.context.form);
     const bool confirmed = trial.succeeded() || trial.context.outcome == Outcome::Failure;
     if (facts == nullptr || !confirmed || trial.points.empty()) return std::nullopt;

@@ -10,6 +10,10 @@ constexpr double kNoTorque = 1e-9;  // [N·m]
 
 Vec3 toVec3(const std::array<float, 3>& values) { return {values[0], values[1], values[2]}; }
 
+Pose toPose(const std::array<float, 3>& p, const std::array<float, 4>& q) {
+    return {Quat(q[0], q[1], q[2], q[3]).normalized(), toVec3(p)};
+}
+
 }  // namespace
 
 bool isContact(const TickRecord& record) {
@@ -25,6 +29,10 @@ std::optional<double> tipDepthInBore(const TickRecord& record, const Pose& X_TW,
 }
 
 bool isClearOfWalls(const TickRecord& record) { return record.proxy_depth_m <= kWallGive; }
+
+Pose handPose(const TickRecord& record) { return toPose(record.hand_position_m, record.hand_quaternion); }
+
+Pose proxyPose(const TickRecord& record) { return toPose(record.proxy_position_m, record.proxy_quaternion); }
 
 Vec3 handPosition(const TickRecord& record) { return toVec3(record.hand_position_m); }
 

@@ -28,6 +28,9 @@ std::optional<double> tipDepthInBore(const TickRecord& record, const Pose& X_TW,
 /// True if the held part at the proxy's pose is nowhere deeper than kWallGive in an obstacle.
 bool isClearOfWalls(const TickRecord& record);
 
+Pose handPose(const TickRecord& record);   // X_WH, as recorded
+Pose proxyPose(const TickRecord& record);  // X_WG, as recorded
+
 Vec3 handPosition(const TickRecord& record);   // [m], world
 Vec3 proxyPosition(const TickRecord& record);  // [m], world
 

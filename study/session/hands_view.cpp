@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "study/measures/tick_facts.h"
 #include "study/plan/scene_parts.h"
 
 namespace passung::session {
@@ -43,7 +44,7 @@ TickRecord HandsView::of(const TickRecord& record, std::span<const std::vector<T
         const TickRecord* other = recordAt(others[i], record.tick);
         if (other == nullptr || (other->status & kEngaged) == 0) seen.status &= ~std::uint32_t{kEngaged};
         if (other == nullptr || target_hand_ != i) continue;
-        const Pose X_WT{rotationOf(other->proxy_quaternion), vectorOf(other->proxy_position_m)};
+        const Pose X_WT = measures::proxyPose(*other);
         const Pose back = (X_WT * X_TW_start_).inverse();
         const auto put = [&back](std::array<float, 3>& p, std::array<float, 4>& q) {
             p = stored(back * vectorOf(p));

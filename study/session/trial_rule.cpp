@@ -30,8 +30,7 @@ TrialRule::AnyRule TrialRule::makeRule(const plan::Task& task, const scene::Scen
         return Contour{facts, contour->coverage, {facts, X_WT}};
     }
     if (const auto* placement = std::get_if<plan::FreePlacementTask>(&task.form)) return Placement{*placement, {}};
-    if (std::holds_alternative<plan::AssemblyTask>(task.form))
-        return Assembly{measures::AssemblyWatch(scene.effects.pick.steps, scene)};
+    if (std::holds_alternative<plan::AssemblyTask>(task.form)) return Assembly{measures::AssemblyWatch(scene)};
     const auto& pair = std::get<plan::DiscriminationPairTask>(task.form);
     return Pair{std::llround(pair.answer / kTickSeconds), comparisonInterval(attempt_seed), {}};
 }

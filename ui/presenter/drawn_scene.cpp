@@ -7,6 +7,7 @@
 
 #include "core/import/mesh_import.h"
 #include "core/shape/shape.h"
+#include "study/measures/tick_facts.h"
 #include "study/plan/scene_parts.h"
 
 namespace passung::presenter {
@@ -53,11 +54,7 @@ Vec3 lightFrom(const Camera& camera, const plan::View& appearance) {
 }
 
 Pose recordedPose(const TickRecord& record, plan::ShownPose which) {
-    const bool proxy = which == plan::ShownPose::Proxy;
-    const auto& p = proxy ? record.proxy_position_m : record.hand_position_m;
-    const auto& q = proxy ? record.proxy_quaternion : record.hand_quaternion;
-    const Eigen::Quaternionf rotation(q[0], q[1], q[2], q[3]);
-    return {rotation.cast<double>().normalized(), Vec3(p[0], p[1], p[2])};
+    return which == plan::ShownPose::Proxy ? measures::proxyPose(record) : measures::handPose(record);
 }
 
 /// None: no hand can pick anything up.

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 
+#include "study/measures/tick_facts.h"
+
 namespace passung::presenter {
 
 namespace {
-
-Pose poseFrom(const std::array<float, 3>& p, const std::array<float, 4>& q) {
-    return {Eigen::Quaternionf(q[0], q[1], q[2], q[3]).cast<double>().normalized(), Vec3(p[0], p[1], p[2])};
-}
 
 /// As a record has it.
 Pose roundedToSingle(const Pose& X) {
@@ -54,7 +52,11 @@ void PartPoses::put(std::size_t part, const Pose& X_WP) {
     X_WDrawn_[part] = {X_WP.q, X_WP.p + offsets_[part]};
 }
 
-bool PartPoses::isClosed(const TickRecord& record) const { return (record.input_flags >> (7 + button_) & 1u) != 0; }
+PartPoses::HandTick PartPoses::tickOf(const TickRecord& record) const {
+    const Pose X_WG = measures::proxyPose(record);
+    const bool closed = (record.input_flags >> (7 + button_) & 1u) != 0;
+    return {shown_ == plan::ShownPose::Proxy ? X_WG : measures::handPose(record), X_WG, record.held, closed};
+}
 
 void PartPoses::take(std::span<const std::optional<HandTick>> hands) {
     const auto valid = [this](std::int32_t part) { return part >= 0 && static_cast<std::size_t>(part) < X_WP_.size(); };
@@ -80,9 +82,7 @@ void PartPoses::follow(const loop::ScreenTick& tick) {
     tick_ = first.tick;
     const bool proxy = shown_ == plan::ShownPose::Proxy;
     std::array<std::optional<HandTick>, scene::kMostHands> hands;
-    const Pose X_WG = poseFrom(first.proxy_position_m, first.proxy_quaternion);
-    const Pose X_WH = poseFrom(first.hand_position_m, first.hand_quaternion);
-    hands[0] = {proxy ? X_WG : X_WH, X_WG, first.held, isClosed(first)};
+    hands[0] = tickOf(first);
     for (std::size_t i = 0; i < tick.others.size(); ++i) {
         const loop::HeldPart& other = tick.others[i];
         hands[i + 1] = {proxy ? other.X_WG : other.X_WH, other.X_WG, other.part, other.part >= 0};
@@ -100,15 +100,9 @@ void PartPoses::follow(std::span<const TickRecord* const> records) {
     const std::int64_t tick = records.front()->tick;
     if (tick <= tick_) begin(tick);
     tick_ = tick;
-    const bool proxy = shown_ == plan::ShownPose::Proxy;
     std::array<std::optional<HandTick>, scene::kMostHands> hands;
-    for (std::size_t i = 0; i < std::min(records.size(), hands.size()); ++i) {
-        if (records[i] == nullptr) continue;
-        const TickRecord& record = *records[i];
-        const Pose X_WG = poseFrom(record.proxy_position_m, record.proxy_quaternion);
-        const Pose X_WH = poseFrom(record.hand_position_m, record.hand_quaternion);
-        hands[i] = {proxy ? X_WG : X_WH, X_WG, record.held, isClosed(record)};
-    }
+    for (std::size_t i = 0; i < std::min(records.size(), hands.size()); ++i)
+        if (records[i] != nullptr) hands[i] = tickOf(*records[i]);
     take(hands);
     done_ = records.front()->steps_done;
 }

@@ -52,7 +52,7 @@ private:
     void begin(std::int64_t tick);
     void take(std::span<const std::optional<HandTick>> hands);
     void put(std::size_t part, const Pose& X_WP);
-    bool isClosed(const TickRecord& record) const;
+    HandTick tickOf(const TickRecord& record) const;
 
     std::vector<Pose> X_WStart_, X_WP_, X_WDrawn_;
     std::vector<Vec3> offsets_;

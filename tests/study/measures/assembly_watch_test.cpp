@@ -42,7 +42,7 @@ scene::SceneSpec spec(std::size_t hands = 1) {
 
 class Told {
 public:
-    explicit Told(std::size_t hands = 1) : watch(spec(hands).effects.pick.steps, spec(hands)), hands_(hands) {
+    explicit Told(std::size_t hands = 1) : watch(spec(hands)), hands_(hands) {
         for (TickRecord& record : hands_) {
             record.held = kNoPart;
             record.proxy_quaternion = {1, 0, 0, 0};
