@@ -104,7 +104,7 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const plan::Condi
     if (performer_ != nullptr) performer_->prepares(condition, trials_before, seed);
     auto scenes = build(session::renderedScenes(condition, seed));
     if (!scenes) return scenes.errors();
-    auto hands = makeHands(condition, seed, trials_before);
+    auto hands = makeHands(condition, scenes->scenes.front().parts, seed, trials_before);
     if (!hands) return hands.errors();
     description_ = hands->front().held.device->description();
     auto run =
@@ -132,15 +132,16 @@ Result<BuiltScenes> LoopApparatus::build(const std::vector<session::RenderedScen
     }
 }
 
-Result<std::vector<LoopApparatus::Hand>> LoopApparatus::makeHands(const plan::Condition& condition, std::uint64_t seed,
+Result<std::vector<LoopApparatus::Hand>> LoopApparatus::makeHands(const plan::Condition& condition, BuiltParts parts,
+                                                                  std::uint64_t seed,
                                                                   std::int64_t trials_before) const {
     std::vector<Hand> hands;
     for (std::size_t i = 0; i < condition.scene.handCount(); ++i) {
         const std::string& name = i == 0 ? condition.device : condition.other_devices.at(i - 1);
         const simulated::DeviceParams* preset = simulated::findPreset(name);
         if (preset == nullptr) return Error{.message = "no such device preset", .key = "device.preset", .value = name};
-        hands.push_back({i == 0 ? makeDevice(*preset, condition, seed, trials_before)
-                                : makeOtherDevice(*preset, condition, i, seed, trials_before),
+        hands.push_back({i == 0 ? makeDevice(*preset, condition, parts, seed, trials_before)
+                                : makeOtherDevice(*preset, condition, parts, i, seed, trials_before),
                          std::make_unique<loop::RecordRing>(kRingRecords)});
     }
     return hands;
@@ -148,11 +149,12 @@ Result<std::vector<LoopApparatus::Hand>> LoopApparatus::makeHands(const plan::Co
 
 /// Held by the simulated person's other hand; by nobody where a person takes part, who has one device.
 LoopApparatus::HeldDevice LoopApparatus::makeOtherDevice(const simulated::DeviceParams& preset,
-                                                         const plan::Condition& condition, std::size_t hand,
-                                                         std::uint64_t seed, std::int64_t trials_before) const {
+                                                         const plan::Condition& condition, BuiltParts parts,
+                                                         std::size_t hand, std::uint64_t seed,
+                                                         std::int64_t trials_before) const {
     const scene::Registration r = condition.scene.hand(hand).registration;
     const simulated::HandRegistration registration{r.X_WB, r.scale, r.X_DH};
-    const simulated::VisibleTask task = otherTask(condition, hand);
+    const simulated::VisibleTask task = otherTask(condition, hand, parts);
     HeldDevice held;
     const bool simulated = performer_ == nullptr || performer_->kind() == plan::ParticipantKind::Simulated;
     if (!simulated || condition.timed_by != plan::TimedBy::Program) {
@@ -169,11 +171,11 @@ LoopApparatus::HeldDevice LoopApparatus::makeOtherDevice(const simulated::Device
 }
 
 LoopApparatus::HeldDevice LoopApparatus::makeDevice(const simulated::DeviceParams& preset,
-                                                    const plan::Condition& condition, std::uint64_t seed,
-                                                    std::int64_t trials_before) const {
+                                                    const plan::Condition& condition, BuiltParts parts,
+                                                    std::uint64_t seed, std::int64_t trials_before) const {
     const scene::Registration& r = condition.scene.registration;
     const simulated::HandRegistration registration{r.X_WB, r.scale, r.X_DH};
-    const simulated::VisibleTask task = visibleTask(condition);
+    const simulated::VisibleTask task = visibleTask(condition, parts);
     HeldDevice held;
     if (performer_ != nullptr) held.device = performer_->device(preset, condition);
     if (held.device != nullptr) return held;

@@ -72,12 +72,13 @@ private:
 
     std::optional<session::Presentation> presentation() const;
     Result<BuiltScenes> build(const std::vector<session::RenderedScene>& scenes);
-    HeldDevice makeDevice(const simulated::DeviceParams& preset, const plan::Condition& condition, std::uint64_t seed,
-                          std::int64_t trials_before) const;
-    Result<std::vector<Hand>> makeHands(const plan::Condition& condition, std::uint64_t seed,
+    HeldDevice makeDevice(const simulated::DeviceParams& preset, const plan::Condition& condition, BuiltParts parts,
+                          std::uint64_t seed, std::int64_t trials_before) const;
+    Result<std::vector<Hand>> makeHands(const plan::Condition& condition, BuiltParts parts, std::uint64_t seed,
                                         std::int64_t trials_before) const;
     HeldDevice makeOtherDevice(const simulated::DeviceParams& preset, const plan::Condition& condition,
-                               std::size_t hand, std::uint64_t seed, std::int64_t trials_before) const;
+                               BuiltParts parts, std::size_t hand, std::uint64_t seed,
+                               std::int64_t trials_before) const;
     session::Delivered delivered(const std::optional<session::Presentation>& presentation) const;
 
     DeviceDescription described_, description_;  // of the device itself; as the newest attempt had it

@@ -1,10 +1,8 @@
 #include "study/run/visible_task.h"
 
-#include <algorithm>
 #include <limits>
 
 #include "core/geometry/triangle_distance.h"
-#include "core/scene/mesh_source.h"
 #include "core/shape/shape.h"
 #include "study/plan/scene_parts.h"
 
@@ -13,12 +11,6 @@ namespace {
 
 constexpr double kChordError = 1e-4;  // [m] of the surface that a hand looks for a grip on
 constexpr double kGripBelow = 0.2;    // of a part's height: so far below its top it is taken
-
-geometry::TriangleMesh surfaceOf(const scene::PartSpec& part) {
-    if (const auto* shape = std::get_if<shape::Shape>(&part.geometry)) return shape::tessellate(*shape, kChordError);
-    auto imported = scene::importMeshFile(std::get<scene::MeshFile>(part.geometry), nullptr);
-    return imported ? std::move(imported->mesh) : geometry::TriangleMesh{};
-}
 
 Vec3 closestOn(const geometry::TriangleMesh& mesh, const Vec3& p) {
     Vec3 closest = p;
@@ -34,9 +26,8 @@ Vec3 closestOn(const geometry::TriangleMesh& mesh, const Vec3& p) {
 
 Pose shownPose(const scene::PartSpec& part) { return {part.X_WP.q, part.X_WP.p + part.shown_offset}; }
 
-/// A point of the surface near the part's top, where people take it. Of a file that cannot be read any more the origin.
-void findGrip(const scene::PartSpec& spec, simulated::AssembleGoal::Part& part) {
-    const geometry::TriangleMesh mesh = surfaceOf(spec);
+/// A point of the surface near the part's top, where people take it.
+void findGrip(const geometry::TriangleMesh& mesh, simulated::AssembleGoal::Part& part) {
     if (mesh.vertices.empty()) return;
     const geometry::Bounds box = geometry::boundsOf(mesh);
     Vec3 wanted = 0.5 * (box.low + box.high);
@@ -45,8 +36,8 @@ void findGrip(const scene::PartSpec& spec, simulated::AssembleGoal::Part& part) 
     part.below = -box.low.z();
 }
 
-simulated::VisibleTask assemblyTask(const plan::Condition& condition, const plan::AssemblyTask& asked,
-                                    std::size_t hand) {
+simulated::VisibleTask assemblyTask(const plan::Condition& condition, const plan::AssemblyTask& asked, std::size_t hand,
+                                    BuiltParts parts) {
     const scene::Pick& pick = condition.scene.effects.pick;
     simulated::AssembleGoal goal;
     for (const scene::PartSpec& part : condition.scene.parts)
@@ -62,9 +53,11 @@ simulated::VisibleTask assemblyTask(const plan::Condition& condition, const plan
              .insertion = described ? asked.steps[i].insertion : 0.0,
              .after = step.after,
              .mine = (described ? asked.steps[i].hand : 0) == hand});
-        const bool known = std::any_of(pick.steps.begin(), pick.steps.begin() + static_cast<std::ptrdiff_t>(i),
-                                       [&](const auto& other) { return other.part == step.part; });
-        if (!known) findGrip(condition.scene.parts[step.part], goal.parts[step.part]);
+        const auto* shape = std::get_if<shape::Shape>(&condition.scene.parts[step.part].geometry);
+        if (shape != nullptr)
+            findGrip(shape::tessellate(*shape, kChordError), goal.parts[step.part]);
+        else if (step.part < parts.size())
+            findGrip(parts[step.part]->mesh, goal.parts[step.part]);
     }
     goal.close = 1u << (pick.button - 1);
     goal.hand = hand;
@@ -77,9 +70,9 @@ simulated::VisibleTask assemblyTask(const plan::Condition& condition, const plan
 
 }  // namespace
 
-simulated::VisibleTask visibleTask(const plan::Condition& condition) {
+simulated::VisibleTask visibleTask(const plan::Condition& condition, BuiltParts parts) {
     if (const auto* assembly = std::get_if<plan::AssemblyTask>(&condition.task.form))
-        return assemblyTask(condition, *assembly, 0);
+        return assemblyTask(condition, *assembly, 0, parts);
     simulated::VisibleTask task;
     if (const auto* held = plan::heldPart(condition.scene)) task.X_WHeldStart = shownPose(*held);
     if (const auto* target = plan::partNamed(condition.scene, condition.task.target)) {
@@ -100,9 +93,9 @@ simulated::VisibleTask visibleTask(const plan::Condition& condition) {
     return task;
 }
 
-simulated::VisibleTask otherTask(const plan::Condition& condition, std::size_t hand) {
+simulated::VisibleTask otherTask(const plan::Condition& condition, std::size_t hand, BuiltParts parts) {
     if (const auto* assembly = std::get_if<plan::AssemblyTask>(&condition.task.form))
-        return assemblyTask(condition, *assembly, hand);
+        return assemblyTask(condition, *assembly, hand, parts);
     simulated::VisibleTask task;
     task.X_WHeldStart = condition.scene.parts[condition.scene.heldBy(hand)].X_WP;
     task.goal = simulated::HoldGoal{};

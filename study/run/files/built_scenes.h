@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -7,6 +9,9 @@
 #include "study/session/rendered_scenes.h"
 
 namespace passung::run {
+
+/// The parts of a scene as built, in its order.
+using BuiltParts = std::span<const std::shared_ptr<const scene::Part>>;
 
 /// The scenes of an attempt, built, with their tick models. Models borrow from scenes, turns from models: moving it is
 /// fine, copying is not.
