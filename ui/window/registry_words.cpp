@@ -63,6 +63,11 @@ namespace {
     QT_TRANSLATE_NOOP("measures", "Entries into the passage"),
     QT_TRANSLATE_NOOP("measures", "Position error at the confirmation"),
     QT_TRANSLATE_NOOP("measures", "Angle error at the confirmation"),
+    QT_TRANSLATE_NOOP("measures", "Steps done"),
+    QT_TRANSLATE_NOOP("measures", "Errors of order"),
+    QT_TRANSLATE_NOOP("measures", "Parts let go elsewhere"),
+    QT_TRANSLATE_NOOP("measures", "Parts taken again"),
+    QT_TRANSLATE_NOOP("measures", "Steps taken back"),
 };
 
 /// Labels of all devices, likewise.

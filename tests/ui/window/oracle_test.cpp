@@ -53,6 +53,7 @@ struct Moment {
     std::optional<TickRecord> tick;  // none: the attempt has not begun
     bool in_trial = false;           // the start pose was reached, and the trial is not over
     std::array<loop::HeldPart, scene::kMostHands - 1> others = {};  // of that tick
+    std::vector<std::optional<Pose>> X_W = {};                      // of each part that a hand has picked up, as shown
 };
 
 geometry::TriangleMesh meshOf(const scene::PartSpec& part) {
@@ -64,19 +65,27 @@ geometry::TriangleMesh meshOf(const scene::PartSpec& part) {
     return shape::tessellate(std::get<shape::Shape>(part.geometry), kFine);
 }
 
-/// Where everything stands: obstacles where they are drawn, the held part where the condition shows it in that tick.
+Pose poseOf(const std::array<float, 3>& p, const std::array<float, 4>& q) {
+    return {Eigen::Quaternionf(q[0], q[1], q[2], q[3]).cast<double>().normalized(), Vec3(p[0], p[1], p[2])};
+}
+
+/// Where everything stands: obstacles where they are drawn, the held part where the condition shows it in that tick,
+/// what was picked up where it is or was left.
 std::vector<Standing> standing(const Moment& moment) {
     std::vector<Standing> parts;
-    for (const scene::PartSpec& part : moment.condition->scene.parts) {
+    const auto& specs = moment.condition->scene.parts;
+    const bool proxy = moment.condition->shown == plan::ShownPose::Proxy;
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+        const scene::PartSpec& part = specs[i];
         Pose X_W = part.X_WP;
-        const bool proxy = moment.condition->shown == plan::ShownPose::Proxy;
-        if (part.held && part.hand > 0 && moment.tick) {
+        if (i < moment.X_W.size() && moment.X_W[i]) {
+            X_W = *moment.X_W[i];
+        } else if (part.held && part.hand > 0 && moment.tick) {
             const loop::HeldPart& other = moment.others[part.hand - 1];
             X_W = proxy ? other.X_WG : other.X_WH;
         } else if (part.held && moment.tick) {
-            const auto& p = proxy ? moment.tick->proxy_position_m : moment.tick->hand_position_m;
-            const auto& q = proxy ? moment.tick->proxy_quaternion : moment.tick->hand_quaternion;
-            X_W = {Eigen::Quaternionf(q[0], q[1], q[2], q[3]).cast<double>().normalized(), Vec3(p[0], p[1], p[2])};
+            X_W = proxy ? poseOf(moment.tick->proxy_position_m, moment.tick->proxy_quaternion)
+                        : poseOf(moment.tick->hand_position_m, moment.tick->hand_quaternion);
         }
         X_W.p += part.shown_offset;
         parts.push_back({meshOf(part), X_W});
@@ -129,7 +138,9 @@ public:
         bring();
         ++scenes;
         seen_ = {};
-        moment_ = {&condition, std::nullopt, false, {}};
+        moment_ = {&condition, std::nullopt, false, {}, {}};
+        moment_.X_W.resize(condition.scene.parts.size());
+        holding_ = {};
         seen_early_ = false;
         auto scene = artist_.draw(condition, plan_->view);
         if (!scene) throw std::runtime_error(toString(scene.errors().front()));
@@ -175,9 +186,34 @@ private:
         std::vector<loop::ScreenTick> ticks(256);
         while (const std::size_t count = screen_.take(ticks)) {
             desk_.bring({}, std::span(ticks).first(count));
+            for (const loop::ScreenTick& tick : std::span(ticks).first(count)) follow(tick);
             moment_.tick = ticks[count - 1].record;
             moment_.others = ticks[count - 1].others;
         }
+    }
+
+    /// What hands carry is where they are; what they let go stays where its proxy was in the tick before.
+    void follow(const loop::ScreenTick& tick) {
+        const TickRecord& first = tick.record;
+        const auto holds = [&](std::size_t hand) -> loop::HeldPart {
+            if (hand > 0) return tick.others[hand - 1];
+            return {.X_WH = poseOf(first.hand_position_m, first.hand_quaternion),
+                    .X_WG = poseOf(first.proxy_position_m, first.proxy_quaternion),
+                    .part = first.held};
+        };
+        const bool proxy = moment_.condition->shown == plan::ShownPose::Proxy;
+        std::array<loop::HeldPart, scene::kMostHands> now;
+        for (std::size_t hand = 0; hand < now.size(); ++hand) {
+            now[hand] = holds(hand);
+            const loop::HeldPart& before = holding_[hand];
+            if (before.part >= 0 && before.part != now[hand].part)
+                moment_.X_W[static_cast<std::size_t>(before.part)] = before.X_WG;
+        }
+        for (std::size_t hand = now.size();
+             hand-- > 0;)  // where two hands have one part the first hand's pose is shown
+            if (now[hand].part >= 0)
+                moment_.X_W[static_cast<std::size_t>(now[hand].part)] = proxy ? now[hand].X_WG : now[hand].X_WH;
+        holding_ = now;
     }
 
     window::Desk& desk_;
@@ -187,6 +223,7 @@ private:
     loop::ScreenRing screen_{4096};
     std::vector<loop::ScreenRing*> screens_{&screen_};
     Moment moment_;
+    std::array<loop::HeldPart, scene::kMostHands> holding_ = {};  // of the tick before
     std::optional<session::SessionView> told_;
     std::array<bool, 3> seen_{};
     bool seen_early_ = false;

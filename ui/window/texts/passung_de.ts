@@ -1513,6 +1513,26 @@
         <source>Angle error at the confirmation</source>
         <translation>Winkelfehler bei der Bestätigung</translation>
     </message>
+    <message>
+        <source>Steps done</source>
+        <translation>Erledigte Schritte</translation>
+    </message>
+    <message>
+        <source>Errors of order</source>
+        <translation>Fehler in der Reihenfolge</translation>
+    </message>
+    <message>
+        <source>Parts let go elsewhere</source>
+        <translation>Anderswo abgelegte Teile</translation>
+    </message>
+    <message>
+        <source>Parts taken again</source>
+        <translation>Erneut gegriffene Teile</translation>
+    </message>
+    <message>
+        <source>Steps taken back</source>
+        <translation>Zurückgenommene Schritte</translation>
+    </message>
 </context>
 <context>
     <name>participant</name>
