@@ -165,6 +165,8 @@ protected:
         EXPECT_GE(compared, 4) << name;
     }
 
+    static bool judged() { return std::getenv("PASSUNG_LONG") != nullptr; }  // else the machine does other things too
+
     /// While one part after the other is lifted, each shown by a picture of its own.
     double picturesPerSecond() {
         int pictures = 0;
@@ -182,7 +184,7 @@ protected:
         pictures = 0;
         const auto start = Steady::now();
         double seconds = 0.0;
-        while (seconds < 3.0) {
+        while (seconds < (judged() ? 3.0 : 0.3)) {
             lift();
             seconds = std::chrono::duration<double>(Steady::now() - start).count();
         }
@@ -235,7 +237,9 @@ TEST_F(Carrying, TwoHundredPartsAreFastEnough) {
     }
     double fastest = 0.0;
     using Quality = presenter::PictureQuality;
-    for (const Quality& quality : {Quality{true, 2, 1.0}, Quality{false, 1, 1.0}, Quality{false, 1, 0.75}}) {
+    std::vector<Quality> qualities{{false, 1, 1.0}};
+    if (judged()) qualities = {{true, 2, 1.0}, {false, 1, 1.0}, {false, 1, 0.75}};
+    for (const Quality& quality : qualities) {
         quality_ = quality;
         open("en", true);
         begin(bench());
@@ -254,8 +258,7 @@ TEST_F(Carrying, TwoHundredPartsAreFastEnough) {
     open("en", true);
     begin(condition);
     tick(condition.scene.start_gate.X_WH, kNoPart);
-    const bool judged = std::getenv("PASSUNG_LONG") != nullptr;  // else the machine does other things too
-    EXPECT_GE(fastest, judged ? 20.0 : 1.0);
+    EXPECT_GE(fastest, judged() ? 20.0 : 1.0);
     compare("two_hundred");
 }
 
