@@ -21,6 +21,13 @@ const char* stepStateName(StepState state) {
     return kNames[static_cast<std::size_t>(state)];
 }
 
+StepState stateInHand(const scene::AssemblyStep& step, std::span<const Pose> X_WP, double moved) {
+    if (scene::isAtGoal(step, X_WP)) return StepState::Inserted;
+    const scene::GoalError error = scene::goalError(X_WP[step.part], scene::goalOf(step, X_WP), step.folds);
+    if (error.position <= kNear * step.position_tolerance) return StepState::Near;
+    return moved > kCarried ? StepState::Carried : StepState::Picked;
+}
+
 AssemblyWatch::AssemblyWatch(const scene::SceneSpec& spec)
     : steps_(spec.effects.pick.steps),
       parts_(spec),
@@ -89,9 +96,7 @@ void AssemblyWatch::carry(std::size_t step, std::size_t hand, const Vec3& from, 
     const Vec3& p = parts_.poses()[steps_[step].part].p;
     results_[step].held_periods += periods;
     results_[step].path += (p - from).norm();
-    StepState now = (p - taken_at_[step]).norm() > kCarried ? StepState::Carried : StepState::Picked;
-    if (errorOf(step).position <= kNear * steps_[step].position_tolerance) now = StepState::Near;
-    if (isAtGoal(step)) now = StepState::Inserted;
+    const StepState now = stateInHand(steps_[step], parts_.poses(), (p - taken_at_[step]).norm());
     if (now > states_[step]) enter(step, now, hand, changes);
 }
 

@@ -27,6 +27,10 @@ const char* stepStateName(StepState state);  // as stored
 inline constexpr double kCarried = 0.005;  // [m]
 inline constexpr double kNear = 10.0;      // position tolerances
 
+/// The state of a step whose part is in a hand that has moved it this far from where it took it [m], from Picked to
+/// Inserted. `X_WP`: of all parts.
+StepState stateInHand(const scene::AssemblyStep& step, std::span<const Pose> X_WP, double moved);
+
 /// Something that happened to a step.
 struct StepChange {
     std::size_t step = 0;

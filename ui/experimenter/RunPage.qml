@@ -25,15 +25,34 @@ ColumnLayout {
         Layout.fillHeight: true
         spacing: 16
 
-        Panel {
-            title: qsTr("TRIALS")
-            extra: run.known ? Math.round(100 * run.share) + " %" : ""
+        ColumnLayout {
             Layout.preferredWidth: page.sideWidth
+            Layout.maximumWidth: page.sideWidth
             Layout.fillHeight: true
-            TrialList {
-                anchors.fill: parent
-                anchors.leftMargin: -6
-                anchors.rightMargin: -6
+            spacing: 16
+            Panel {
+                title: qsTr("TRIALS")
+                extra: run.known ? Math.round(100 * run.share) + " %" : ""
+                Layout.fillWidth: true
+                Layout.fillHeight: true
+                TrialList {
+                    anchors.fill: parent
+                    anchors.leftMargin: -6
+                    anchors.rightMargin: -6
+                }
+            }
+            Panel {
+                id: steps
+                objectName: "steps"
+                visible: run.steps.length > 0
+                title: qsTr("STEPS")
+                extra: qsTr("%1 of %2").arg(run.steps.filter(step => step.tone === "good").length).arg(run.steps.length)
+                Layout.fillWidth: true
+                Layout.preferredHeight: Math.min(steps.begins + progress.contentHeight + steps.pad, 0.45 * page.height)
+                StepProgress {
+                    id: progress
+                    anchors.fill: parent
+                }
             }
         }
 

@@ -40,7 +40,11 @@ void PartPoses::begin(std::int64_t tick) {
     tick_ = tick;
     done_ = 0;
     X_WP_ = X_WStart_;
-    for (std::size_t part = 0; part < X_WP_.size(); ++part) put(part, X_WStart_[part]);
+    taken_at_.clear();
+    for (std::size_t part = 0; part < X_WP_.size(); ++part) {
+        put(part, X_WStart_[part]);
+        taken_at_.push_back(X_WStart_[part].p);
+    }
     hands_.assign(X_WHandStart_.size(), {});
     for (std::size_t hand = 0; hand < hands_.size(); ++hand)
         hands_[hand] = {X_WHandStart_[hand], held_start_[hand], held_start_[hand] >= 0};
@@ -66,6 +70,14 @@ void PartPoses::take(std::span<const std::optional<HandTick>> hands) {
         if (hands[hand] && valid(before) && hands[hand]->part != before)
             put(static_cast<std::size_t>(before), roundedToSingle(X_WG_[hand]));
     }
+    const auto isHeld = [this](std::int32_t part) {
+        return std::any_of(hands_.begin(), hands_.end(), [part](const DrawnHand& hand) { return hand.part == part; });
+    };
+    for (const std::optional<HandTick>& hand : hands.first(count))
+        if (hand && valid(hand->part) && !isHeld(hand->part)) {
+            const auto part = static_cast<std::size_t>(hand->part);
+            taken_at_[part] = X_WP_[part].p;
+        }
     for (std::size_t hand = count; hand-- > 0;) {  // the first of two has the last word
         if (!hands[hand]) continue;
         const HandTick& now = *hands[hand];

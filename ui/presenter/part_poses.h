@@ -40,6 +40,8 @@ public:
     /// Where each part is, as far as it is shown: without the offsets that parts are drawn at.
     const std::vector<Pose>& poses() const { return X_WP_; }
     const std::vector<DrawnHand>& hands() const { return hands_; }
+    /// Where each part was when a hand last took it; its start if none has [m].
+    const std::vector<Vec3>& takenAt() const { return taken_at_; }
     /// The steps of an assembly that are done.
     scene::StepSet done() const { return done_; }
 
@@ -55,7 +57,7 @@ private:
     HandTick tickOf(const TickRecord& record) const;
 
     std::vector<Pose> X_WStart_, X_WP_, X_WDrawn_;
-    std::vector<Vec3> offsets_;
+    std::vector<Vec3> offsets_, taken_at_;
     std::vector<Pose> X_WHandStart_;
     std::vector<std::int32_t> held_start_;
     std::vector<DrawnHand> hands_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace passung::presenter {
 
 bool mayBeNext(const scene::AssemblyStep& step, std::size_t index, scene::StepSet done) {
@@ -21,6 +23,21 @@ std::vector<StepLine> stepLines(const DrawnPicking& picking, scene::StepSet done
         lines.push_back(std::move(line));
     }
     return lines;
+}
+
+std::vector<measures::StepState> stepStates(const DrawnPicking& picking, const PartPoses& poses) {
+    using measures::StepState;
+    std::vector<StepState> states(picking.pick.steps.size(), StepState::Idle);
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        const scene::AssemblyStep& step = picking.pick.steps[i];
+        const auto holds = [&](const DrawnHand& hand) { return hand.part == static_cast<std::int32_t>(step.part); };
+        if ((poses.done() & scene::stepBit(i)) != 0)
+            states[i] = StepState::Locked;
+        else if (std::any_of(poses.hands().begin(), poses.hands().end(), holds))
+            states[i] = measures::stateInHand(step, poses.poses(),
+                                              (poses.poses()[step.part].p - poses.takenAt()[step.part]).norm());
+    }
+    return states;
 }
 
 std::vector<StepImage> stepImages(const DrawnScene& scene, std::span<const Pose> X_WP, scene::StepSet done) {

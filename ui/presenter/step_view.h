@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "study/measures/assembly_watch.h"
 #include "ui/presenter/drawn_scene.h"
+#include "ui/presenter/part_poses.h"
 
 namespace passung::presenter {
 
@@ -20,6 +22,9 @@ struct StepImage {
     std::size_t part = 0;
     Pose X_W;
 };
+
+/// How far each step is, in the order of the scene: its part where it is shown.
+std::vector<measures::StepState> stepStates(const DrawnPicking& picking, const PartPoses& poses);
 
 /// In the order of the scene. `done`: the steps that are.
 std::vector<StepLine> stepLines(const DrawnPicking& picking, scene::StepSet done);

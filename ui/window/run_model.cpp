@@ -31,6 +31,7 @@ struct Tone {
 
 RunModel::RunModel(Desk& desk) : desk_(desk) {
     since_measured_.start();
+    connect(this, &RunModel::measured, this, &RunModel::lookAtSteps);
     connect(&desk_, &Desk::happened, this, [this] {
         emit changed();
         emit measured();
@@ -64,6 +65,30 @@ QString RunModel::warnings() const {
 QString RunModel::sound() const { return view().brief.sound ? soundLine(desk_.soundOutput()) : QString(); }
 
 QString RunModel::quality() const { return view().quality ? qualityLine(*view().quality) : QString(); }
+
+QVariantList RunModel::stepsNow() const {
+    QVariantList all;
+    const auto& scene = desk_.run().scene();
+    if (!running() || !scene || !scene->picking) return all;
+    const auto lines = presenter::stepLines(*scene->picking, desk_.run().poses().done());
+    const auto states = presenter::stepStates(*scene->picking, desk_.run().poses());
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        using measures::StepState;
+        QString tone = QStringLiteral("rest");
+        if (states[i] == StepState::Locked) tone = QStringLiteral("good");
+        if (states[i] != StepState::Locked && states[i] != StepState::Idle) tone = QStringLiteral("go");
+        all.append(QVariantMap{
+            {"name", QString::fromStdString(lines[i].name)}, {"word", stepWord(states[i])}, {"tone", tone}});
+    }
+    return all;
+}
+
+void RunModel::lookAtSteps() {
+    QVariantList now = stepsNow();
+    if (now == steps_) return;
+    steps_ = std::move(now);
+    emit stepsChanged();
+}
 
 double RunModel::share() const {
     if (view().planned == 0) return 0.0;
@@ -126,6 +151,7 @@ void RunModel::showTraces(experimenter::TraceItem* force, experimenter::TraceIte
 void RunModel::retranslate() {
     emit changed();
     emit rowsChanged();
+    lookAtSteps();
 }
 
 }  // namespace passung::window

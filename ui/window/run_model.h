@@ -41,7 +41,8 @@ class RunModel : public QObject {
     Q_PROPERTY(bool pictured READ pictured NOTIFY measured)    // the pictures are known
     Q_PROPERTY(double pictures READ pictures NOTIFY measured)  // a second
     Q_PROPERTY(double pictureAge READ pictureAge NOTIFY measured)
-    Q_PROPERTY(QString quality READ quality NOTIFY changed)  // of the pictures; empty: not found yet
+    Q_PROPERTY(QVariantList steps READ steps NOTIFY stepsChanged)  // of an assembly: "name", "word", "tone"
+    Q_PROPERTY(QString quality READ quality NOTIFY changed)        // of the pictures; empty: not found yet
 
 public:
     explicit RunModel(Desk& desk);
@@ -75,6 +76,7 @@ public:
     bool pictured() const { return view().pictures.has_value(); }
     double pictures() const { return view().pictures ? view().pictures->per_s : 0.0; }
     double pictureAge() const { return view().pictures ? view().pictures->age_ms : 0.0; }
+    const QVariantList& steps() const { return steps_; }
     QString quality() const;
 
     /// `name`: one of session::kCommandNames.
@@ -88,14 +90,18 @@ signals:
     void changed();
     void rowsChanged();
     void measured();
+    void stepsChanged();
 
 private:
+    QVariantList stepsNow() const;
+    void lookAtSteps();
     const presenter::RunView& view() const { return desk_.run().view(); }
     presenter::LoopView loop() const { return view().loop.value_or(presenter::LoopView()); }
 
     Desk& desk_;
     std::int64_t rows_known_ = -1;
     std::size_t state_known_ = 0;  // its place among the states
+    QVariantList steps_;
     QElapsedTimer since_measured_;
 };
 

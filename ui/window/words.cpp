@@ -117,6 +117,25 @@ QString stateDetail(const RunView& view) {
     return std::visit(Detail{view}, view.state);
 }
 
+QString stepWord(measures::StepState state) {
+    using measures::StepState;
+    switch (state) {
+        case StepState::Idle:
+            return said(QT_TRANSLATE_NOOP("words", "to do"));
+        case StepState::Picked:
+            return said(QT_TRANSLATE_NOOP("words", "picked up"));
+        case StepState::Carried:
+            return said(QT_TRANSLATE_NOOP("words", "carried"));
+        case StepState::Near:
+            return said(QT_TRANSLATE_NOOP("words", "near its place"));
+        case StepState::Inserted:
+            return said(QT_TRANSLATE_NOOP("words", "in place, held"));
+        case StepState::Locked:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("words", "done"));
+}
+
 QString rowWord(RowState state) {
     switch (state) {
         case RowState::Waiting:

@@ -3,6 +3,7 @@
 #include <QtCore/QString>
 #include <optional>
 
+#include "study/measures/assembly_watch.h"
 #include "ui/presenter/run.h"
 #include "ui/sound/sound_feed.h"
 
@@ -13,6 +14,7 @@ namespace passung::window {
 QString stateLine(const presenter::RunView& view);
 QString stateDetail(const presenter::RunView& view);
 QString rowWord(presenter::RowState state);
+QString stepWord(measures::StepState state);
 /// A sign that tells row states apart without colour.
 QString rowSign(presenter::RowState state);
 QString whyNot(presenter::Why why);

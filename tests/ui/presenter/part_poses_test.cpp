@@ -251,6 +251,37 @@ TEST(StepView, ShowsWhereWhatMayBeNextBelongs) {
     EXPECT_TRUE(stepImages(*drawn(silent), X_WP, 0).empty());
 }
 
+TEST(StepView, TellsHowFarEachStepIs) {
+    // Truth: by hand, from what the states are said to be. Goal 0.2 m along y, within 1 mm; taken 50 mm along x.
+    auto condition = threeSteps();
+    condition.scene.effects.pick.steps[0].position_tolerance = 0.001;
+    const auto scene = drawn(condition);
+    PartPoses poses(*scene);
+    using measures::StepState;
+    std::int64_t tick = 0;
+    const auto after = [&](const Vec3& p, std::int32_t held, scene::StepSet done) {
+        loop::ScreenTick one;
+        one.record.tick = tick++;
+        one.record.held = held;
+        one.record.steps_done = done;
+        store({Quat::Identity(), p}, one.record.hand_position_m, one.record.hand_quaternion);
+        store({Quat::Identity(), p}, one.record.proxy_position_m, one.record.proxy_quaternion);
+        poses.follow(one);
+        return stepStates(*scene->picking, poses);
+    };
+    const std::vector<StepState> none(3, StepState::Idle);
+    const auto first = [&](StepState state) { return std::vector{state, StepState::Idle, StepState::Idle}; };
+    EXPECT_EQ(after({0.05, 0, 0}, kNoPart, 0), none);
+    EXPECT_EQ(after({0.05, 0.001, 0}, 1, 0), first(StepState::Picked));
+    EXPECT_EQ(after({0.05, 0.1, 0}, 1, 0), first(StepState::Carried));
+    EXPECT_EQ(after({0.009, 0.2, 0}, 1, 0), first(StepState::Near));
+    EXPECT_EQ(after({0.0009, 0.2, 0}, 1, 0), first(StepState::Inserted));
+    EXPECT_EQ(after({0.05, 0.1, 0}, 1, 0), first(StepState::Carried)) << "and is drawn out again";
+    EXPECT_EQ(after({0.05, 0.1, 0}, kNoPart, 0), none) << "it lies where it does not belong";
+    EXPECT_EQ(after({0.051, 0.1, 0}, 1, 0), first(StepState::Picked)) << "from where it lay";
+    EXPECT_EQ(after({0, 0.2, 0}, kNoPart, 1), first(StepState::Locked));
+}
+
 TEST(SceneArtist, APictureHasRoomForEveryGoal) {
     // Truth: closed form: the angle from the camera's axis to the part at its goal is less than half the opening.
     const auto scene = drawn(threeSteps());

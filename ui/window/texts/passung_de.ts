@@ -769,6 +769,14 @@
         <translation>HAPTISCHE SCHLEIFE</translation>
     </message>
     <message>
+        <source>STEPS</source>
+        <translation>SCHRITTE</translation>
+    </message>
+    <message>
+        <source>%1 of %2</source>
+        <translation>%1 von %2</translation>
+    </message>
+    <message>
         <source>Rate</source>
         <translation>Takt</translation>
     </message>
@@ -2479,6 +2487,30 @@
     <message>
         <source>left out</source>
         <translation>ausgelassen</translation>
+    </message>
+    <message>
+        <source>to do</source>
+        <translation>offen</translation>
+    </message>
+    <message>
+        <source>picked up</source>
+        <translation>aufgenommen</translation>
+    </message>
+    <message>
+        <source>carried</source>
+        <translation>getragen</translation>
+    </message>
+    <message>
+        <source>near its place</source>
+        <translation>nahe am Ziel</translation>
+    </message>
+    <message>
+        <source>in place, held</source>
+        <translation>am Ziel, gehalten</translation>
+    </message>
+    <message>
+        <source>done</source>
+        <translation>erledigt</translation>
     </message>
     <message>
         <source>does not count</source>
