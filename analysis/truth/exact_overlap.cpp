@@ -435,19 +435,33 @@ bool SceneOverlap::areApart(const Part& a, const Pose& X_WA, const Part& b, cons
     return beyond(a, X_WA, b, X_WB) || beyond(b, X_WB, a, X_WA);
 }
 
+void SceneOverlap::add(const Part& a, const Pose& X_WA, const Part& b, const OverlapEffort& search, Overlap& deepest) {
+    if (areApart(a, X_WA, b, b.X_W)) return;
+    OverlapEffort deeper = search;
+    deeper.ignore = std::max(search.ignore, deepest.depth);
+    const Overlap found = overlapOf(*a.body, X_WA, *b.body, b.X_W, deeper);
+    if (found.depth > deepest.depth) {
+        deepest.depth = found.depth;
+        deepest.point = found.point;
+    }
+    deepest.bound = std::max(deepest.bound, found.bound);
+    deepest.pieces += found.pieces;
+}
+
 Overlap SceneOverlap::at(const Pose& X_WG, const OverlapEffort& search) const {
     Overlap deepest;
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-        if (i == held_ || areApart(parts_[held_], X_WG, parts_[i], parts_[i].X_W)) continue;
-        OverlapEffort deeper = search;
-        deeper.ignore = std::max(search.ignore, deepest.depth);
-        const Overlap found = overlapOf(*parts_[held_].body, X_WG, *parts_[i].body, parts_[i].X_W, deeper);
-        if (found.depth > deepest.depth) {
-            deepest.depth = found.depth;
-            deepest.point = found.point;
-        }
-        deepest.bound = std::max(deepest.bound, found.bound);
-        deepest.pieces += found.pieces;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+        if (i != held_) add(parts_[held_], X_WG, parts_[i], search, deepest);
+    return deepest;
+}
+
+Overlap SceneOverlap::of(std::span<const std::size_t> held, const OverlapEffort& search) const {
+    Overlap deepest;
+    for (std::size_t k = 0; k < held.size(); ++k) {
+        const auto before = held.first(k);
+        for (std::size_t i = 0; i < parts_.size(); ++i)
+            if (i != held[k] && std::find(before.begin(), before.end(), i) == before.end())
+                add(parts_[held[k]], parts_[held[k]].X_W, parts_[i], search, deepest);
     }
     return deepest;
 }

@@ -98,19 +98,19 @@ private:
     std::map<std::string, std::shared_ptr<const OverlapBody>> bodies_;
 };
 
-/// The held part of a scene against all its obstacles.
+/// The held parts of a scene against all others.
 class SceneOverlap {
 public:
     /// The scene and `bodies` may go.
     SceneOverlap(const scene::Scene& scene, OverlapBodies& bodies);
 
     bool hasObstacles() const { return parts_.size() > 1; }
-    /// Another part than the one that the first hand begins with is the held one. `part`: its number in the scene.
-    void hold(std::size_t part) { held_ = part; }
-    /// Puts an obstacle elsewhere than where it starts.
+    /// Puts a part elsewhere than where it starts. `part`: its number in the scene.
     void place(std::size_t part, const Pose& X_W) { parts_[part].X_W = X_W; }
-    /// With the held part at X_WG. @pre a part is held
+    /// With the part that the first hand begins with at X_WG. @pre there is one
     Overlap at(const Pose& X_WG, const OverlapEffort& search = {}) const;
+    /// The deepest of all pairs of which one is among `held`, where all parts were placed.
+    Overlap of(std::span<const std::size_t> held, const OverlapEffort& search = {}) const;
     /// Do the held part's triangles meet any obstacle's?
     bool surfacesMeet(const Pose& X_WG) const;
 
@@ -122,6 +122,8 @@ private:
     };
     /// By a ball about one part's box and the box of the other, either way.
     static bool areApart(const Part& a, const Pose& X_WA, const Part& b, const Pose& X_WB);
+    /// Adds the overlap of a pair to what was found of others.
+    static void add(const Part& a, const Pose& X_WA, const Part& b, const OverlapEffort& search, Overlap& deepest);
 
     std::vector<Part> parts_;
     std::size_t held_;

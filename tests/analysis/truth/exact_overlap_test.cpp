@@ -216,6 +216,28 @@ TEST(ExactOverlap, IsThatOfDensePointsOfBothSurfacesForEveryPairOfShapes) {
     EXPECT_GT(met, 60);
 }
 
+TEST(ExactOverlap, OfSeveralHeldPartsIsTheDeepestOfAllPairsWithOneOfThem) {
+    // Truth: closed form: boxes of 20 mm side by side along x, each pair overlaps by what their distance lacks of
+    // 20 mm. Parts 0 and 1 reach 1 mm into each other, 1 and 2 by 2 mm, 2 and 3 by 3 mm.
+    scene::Scene scene;
+    for (const double x : {0.0, 19.0, 37.0, 54.0}) {
+        scene::PartSpec spec{
+            .name = "box", .geometry = shape::Box{20 * mm, 20 * mm, 20 * mm}, .X_WP = at(x * mm, 0, 0)};
+        scene.parts.push_back(std::make_shared<const scene::Part>(*scene::buildPart(spec)));
+        scene.spec.parts.push_back(spec);
+    }
+    OverlapBodies bodies;
+    const SceneOverlap overlap(scene, bodies);
+    const auto of = [&](std::vector<std::size_t> held) { return overlap.of(held, tight()).depth; };
+    EXPECT_NEAR(of({0}), 1 * mm, 1 * um);
+    EXPECT_NEAR(of({3}), 3 * mm, 1 * um);
+    EXPECT_NEAR(of({1}), 2 * mm, 1 * um);
+    EXPECT_NEAR(of({0, 1}), 2 * mm, 1 * um);
+    EXPECT_NEAR(of({0, 3}), 3 * mm, 1 * um);
+    EXPECT_NEAR(of({3, 2}), 3 * mm, 1 * um);
+    EXPECT_EQ(of({}), 0.0);
+}
+
 TEST(ExactOverlap, TheTreesAnswersAreThoseOfLoopsOverAllTriangles) {
     // Truth: independent loops: the least distance, the sum of solid angles (exact for one triangle at a time), and
     // every pair of triangles.
