@@ -134,12 +134,23 @@ struct Direction {
 
 class Search {
 public:
-    Search(const std::array<Direction, 2>& directions, const OverlapEffort& search)
+    Search(std::span<const Direction> directions, const OverlapEffort& search)
         : directions_(directions), search_(search) {}
 
+    /// Of the surfaces of all directions.
     Overlap run() {
-        for (std::size_t i = 0; i < 2; ++i)
+        for (std::size_t i = 0; i < directions_.size(); ++i)
             if (directions_[i].solid->hasInside()) addSurface(i == 1);
+        return finish();
+    }
+    /// Of one piece of the first direction's surface.
+    Overlap runOver(const TurnedPiece& piece) {
+        addTurned(false, judged(of(false), piece));
+        return finish();
+    }
+
+private:
+    Overlap finish() {
         while (!waiting_.empty() && waiting_.top().bound > (1.0 + search_.share) * found_.depth + search_.tolerance &&
                found_.pieces < search_.most_pieces) {
             const Piece piece = waiting_.top();
@@ -150,7 +161,6 @@ public:
         return found_;
     }
 
-private:
     const Direction& of(bool b_in_a) const { return directions_[b_in_a ? 1 : 0]; }
 
     /// The exact faces of a shape in a shape; else the triangles.
@@ -289,7 +299,7 @@ private:
     struct Later {
         bool operator()(const Piece& a, const Piece& b) const { return a.bound < b.bound; }
     };
-    const std::array<Direction, 2>& directions_;
+    std::span<const Direction> directions_;
     const OverlapEffort& search_;
     Overlap found_;
     double left_out_ = 0.0;
@@ -321,6 +331,50 @@ struct Meeting {
     }
 };
 
+/// The point of a shape's surface that is nearest to `p` outside it, by steps down its distance.
+Vec3 footOn(const OverlapBody& body, Vec3 p) {
+    constexpr double kStep = 1e-6, kNear = 1e-12;  // [m]
+    for (int i = 0; i < 8; ++i) {
+        const double phi = body.signedDistance(p);
+        if (std::abs(phi) < kNear) break;
+        Vec3 slope;
+        for (int axis = 0; axis < 3; ++axis) {
+            const Vec3 aside = kStep * Vec3::Unit(axis);
+            slope[axis] = body.signedDistance(p + aside) - body.signedDistance(p - aside);
+        }
+        if (!(slope.norm() > 0.0)) break;
+        p -= phi * slope.normalized();
+    }
+    return p;
+}
+
+/// overlapOf() of a ring and a solid; nothing where the ring's circle may enter the solid, or the solid is of a kind
+/// that is not known to grow.
+std::optional<Overlap> overlapOfRing(const OverlapBody& ring, const Pose& X_WRing, const OverlapBody& solid,
+                                     const Pose& X_WSolid, const OverlapEffort& search) {
+    if (!ring.isShape() || !solid.isShape()) return std::nullopt;
+    const auto* torus = std::get_if<shape::Torus>(&ring.shape());
+    const double tube = torus != nullptr ? 0.5 * torus->tube_diameter : 0.0;
+    const auto around = torus != nullptr ? grown(solid.shape(), tube) : std::nullopt;
+    if (!around) return std::nullopt;
+    const OverlapBody near(solid.shape(), *around, tube);
+    const Pose X_WNear = X_WSolid * Pose{Quat::Identity(), Vec3(0.0, 0.0, -around->lift)};
+    const TurnedPiece::Circle circle{0.5 * torus->diameter, 0.0};
+    const std::array way{Direction{&near, &ring, X_WNear.inverse() * X_WRing, X_WNear}};
+    Overlap found = Search(way, search).runOver({{}, circle, circle});
+    if (!(found.bound < tube)) return std::nullopt;
+    if (!(found.depth > 0.0)) return found;
+    const Vec3 foot = X_WSolid * footOn(solid, X_WSolid.inverse() * found.point);
+    // The circle may pass nearer to the foot than where the search stopped. Where the way down is not unique the
+    // circle's point itself stands for it.
+    const double depth = -ring.signedDistance(X_WRing.inverse() * foot);
+    if (depth < found.depth - 1e-9 || std::abs(solid.signedDistance(X_WSolid.inverse() * foot)) > 1e-9) return found;
+    found.depth = depth;
+    found.bound = std::max(found.bound, depth);
+    found.point = foot;
+    return found;
+}
+
 }  // namespace
 
 OverlapBody::OverlapBody(const shape::Shape& shape, double chord_error)
@@ -330,6 +384,9 @@ OverlapBody::OverlapBody(const shape::Shape& shape, double chord_error)
       chord_error_(shape::chordError(shape, chord_error)) {}
 
 OverlapBody::OverlapBody(const geometry::TriangleMesh& mesh) : surface_(std::make_unique<const TriangleBoxes>(mesh)) {}
+
+OverlapBody::OverlapBody(const shape::Shape& shape, const GrownShape& grown, double by)
+    : shape_(std::make_unique<const shape::Shape>(grown.shape)), core_(Core{shape, grown.lift, by}) {}
 
 const TriangleBoxes& OverlapBody::surface() const {
     std::call_once(made_, [this] {
@@ -341,6 +398,7 @@ const TriangleBoxes& OverlapBody::surface() const {
 bool OverlapBody::hasInside() const { return shape_ == nullptr || !std::holds_alternative<shape::Sheet>(*shape_); }
 
 double OverlapBody::signedDistance(const Vec3& p) const {
+    if (core_) return shape::signedDistance(core_->shape, p - Vec3(0.0, 0.0, core_->lift)) - core_->by;
     if (shape_ != nullptr) return shape::signedDistance(*shape_, p);
     const double distance = surface_->nearest(p).distance;
     return surface_->contains(p) ? -distance : distance;
@@ -397,8 +455,11 @@ bool OverlapBody::isOutside(std::span<const Vec3> piece, double phi) const {
 
 Overlap overlapOf(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, const Pose& X_WB,
                   const OverlapEffort& search) {
+    if (const auto found = overlapOfRing(a, X_WA, b, X_WB, search)) return *found;
+    if (const auto found = overlapOfRing(b, X_WB, a, X_WA, search)) return *found;
     const Pose X_AB = X_WA.inverse() * X_WB;
-    return Search({Direction{&b, &a, X_AB.inverse(), X_WB}, Direction{&a, &b, X_AB, X_WA}}, search).run();
+    const std::array ways{Direction{&b, &a, X_AB.inverse(), X_WB}, Direction{&a, &b, X_AB, X_WA}};
+    return Search(ways, search).run();
 }
 
 bool surfacesMeet(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, const Pose& X_WB) {

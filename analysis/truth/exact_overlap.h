@@ -4,10 +4,12 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "analysis/truth/grown_shape.h"
 #include "analysis/truth/surface_pieces.h"
 #include "analysis/truth/triangle_boxes.h"
 #include "core/base/types.h"
@@ -44,12 +46,16 @@ public:
     OverlapBody(const shape::Shape& shape, double chord_error);
     /// @pre at least one triangle, finite vertices.
     explicit OverlapBody(const geometry::TriangleMesh& mesh);
+    /// All points within `by` [m] of a shape, in the frame of `grown` (grown_shape.h), without a surface.
+    OverlapBody(const shape::Shape& shape, const GrownShape& grown, double by);
 
     /// Those of a shape are made when first asked for. Thread-safe.
     const TriangleBoxes& surface() const;
     /// Empty for a mesh, and for kinds of shapes that have none.
     const SurfacePieces& pieces() const { return pieces_; }
     bool isShape() const { return shape_ != nullptr; }
+    /// @pre isShape()
+    const shape::Shape& shape() const { return *shape_; }
     double chordError() const { return chord_error_; }  // as reached [m]
     bool hasInside() const;
     /// Positive outside [m]. @pre hasInside().
@@ -71,7 +77,13 @@ public:
 private:
     bool isMetBy(std::span<const Vec3> piece) const;
 
+    struct Core {
+        shape::Shape shape;
+        double lift, by;  // [m]
+    };
+
     std::unique_ptr<const shape::Shape> shape_;  // none: a mesh
+    std::optional<Core> core_;                   // of one that was grown
     SurfacePieces pieces_;
     double asked_chord_ = 0.0, chord_error_ = 0.0;  // [m]
     mutable std::once_flag made_;
@@ -80,6 +92,10 @@ private:
 
 /// The overlap of A and B, by branch and bound over both surfaces, the deepest possible piece first: of each piece the
 /// depth of its middle, and a bound by the radius of its hull and by convex sets outside the solid. @pre poses finite.
+///   A torus is all points within the radius t of its tube of a circle. While no point of that circle is in the other
+/// solid S, let m be the least distance of the circle from S. Then no point of the torus is deeper in S than t - m, nor
+/// any of S in the torus, and the point of S that is nearest to the circle is as deep: the overlap is t - m. So only
+/// the circle is looked at, in the solid of all points within t of S. (Own.)
 Overlap overlapOf(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, const Pose& X_WB,
                   const OverlapEffort& search = {});
 

@@ -1,6 +1,6 @@
 #include "analysis/truth/grown_shape.h"
 
-#include <cmath>
+#include <algorithm>
 #include <numbers>
 
 namespace passung::truth {
