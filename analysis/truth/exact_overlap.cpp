@@ -466,25 +466,24 @@ bool surfacesMeet(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, 
     return Meeting{a.surface(), b.surface(), X_WB.inverse() * X_WA}.below(0);
 }
 
-std::shared_ptr<const OverlapBody> OverlapBodies::of(const scene::Part& part) {
+const OverlapBodies::Boxed& OverlapBodies::of(const scene::Part& part) {
     std::string key = part.shape ? shape::kindName(*part.shape) : std::to_string(geometry::contentHash(part.mesh));
     if (part.shape)
         for (const double value : shape::dimensions(*part.shape))
             key += " " + std::to_string(std::bit_cast<std::uint64_t>(value));
-    auto& body = bodies_[key];
-    if (!body)
-        body = part.shape ? std::make_shared<const OverlapBody>(*part.shape, chord_error_)
-                          : std::make_shared<const OverlapBody>(part.mesh);
-    return body;
+    Boxed& boxed = bodies_[key];
+    if (boxed.body) return boxed;
+    boxed.body = part.shape ? std::make_shared<const OverlapBody>(*part.shape, chord_error_)
+                            : std::make_shared<const OverlapBody>(part.mesh);
+    boxed.box = geometry::boundsOf(part.mesh);
+    boxed.box.low.array() -= part.chord_error;
+    boxed.box.high.array() += part.chord_error;
+    return boxed;
 }
 
 SceneOverlap::SceneOverlap(const scene::Scene& scene, OverlapBodies& bodies) : held_(scene.held) {
-    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-        geometry::Bounds box = geometry::boundsOf(scene.parts[i]->mesh);
-        box.low.array() -= scene.parts[i]->chord_error;
-        box.high.array() += scene.parts[i]->chord_error;
-        parts_.push_back({bodies.of(*scene.parts[i]), box, scene.spec.parts[i].X_WP});
-    }
+    for (std::size_t i = 0; i < scene.parts.size(); ++i)
+        parts_.push_back({bodies.of(*scene.parts[i]), scene.spec.parts[i].X_WP});
 }
 
 bool SceneOverlap::areApart(const Part& a, const Pose& X_WA, const Part& b, const Pose& X_WB) {

@@ -105,13 +105,17 @@ bool surfacesMeet(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, 
 /// Bodies of parts, each made once: of shapes with triangles within `chord_error` [m], or as near as tessellation gets.
 class OverlapBodies {
 public:
+    struct Boxed {
+        std::shared_ptr<const OverlapBody> body;  // shared_ptr: scenes that come and go share a body
+        geometry::Bounds box;                     // part frame, what the mesh is off the surface included
+    };
+
     explicit OverlapBodies(double chord_error = 5e-7) : chord_error_(chord_error) {}
-    /// shared_ptr: scenes that come and go share a body.
-    std::shared_ptr<const OverlapBody> of(const scene::Part& part);
+    const Boxed& of(const scene::Part& part);
 
 private:
     double chord_error_;
-    std::map<std::string, std::shared_ptr<const OverlapBody>> bodies_;
+    std::map<std::string, Boxed> bodies_;
 };
 
 /// The held parts of a scene against all others.
@@ -131,9 +135,7 @@ public:
     bool surfacesMeet(const Pose& X_WG) const;
 
 private:
-    struct Part {
-        std::shared_ptr<const OverlapBody> body;
-        geometry::Bounds box;  // part frame, what the mesh is off the surface included
+    struct Part : OverlapBodies::Boxed {
         Pose X_W;
     };
     /// By a ball about one part's box and the box of the other, either way.

@@ -237,7 +237,9 @@ void Session::judge(std::span<const TickRecord> records) {
         if (attempt().course.ended()) continue;
         attempt().course.follow(attempt().view.of(record, attempt().others),
                                 attempt().view.all(record, attempt().others), events);
-        if (attempt().course.started()) attempt().records.push_back(record);
+        // What is laid down before the start is then where it was left.
+        if (attempt().course.started() || attempt().condition->scene.effects.picks())
+            attempt().records.push_back(record);
     }
     appendEvents(events);
 }
