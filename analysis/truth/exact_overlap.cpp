@@ -7,6 +7,7 @@
 #include <limits>
 #include <queue>
 
+#include "analysis/truth/grown_shape.h"
 #include "analysis/truth/shape_outside.h"
 
 namespace passung::truth {

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "analysis/truth/grown_shape.h"
 #include "analysis/truth/surface_pieces.h"
 #include "analysis/truth/triangle_boxes.h"
 #include "core/base/types.h"
@@ -18,6 +17,8 @@
 #include "core/shape/shape.h"
 
 namespace passung::truth {
+
+struct GrownShape;
 
 /// How deep two parts reach into each other: the largest depth of any point of either surface in the other solid. It
 /// lies in [depth, bound] [m], of shapes give or take the chord errors of their triangles; depth is that of `point`,
