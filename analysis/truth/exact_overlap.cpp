@@ -7,6 +7,7 @@
 #include <limits>
 #include <queue>
 
+#include "analysis/truth/grown_shape.h"
 #include "analysis/truth/shape_outside.h"
 
 namespace passung::truth {
@@ -134,12 +135,23 @@ struct Direction {
 
 class Search {
 public:
-    Search(const std::array<Direction, 2>& directions, const OverlapEffort& search)
+    Search(std::span<const Direction> directions, const OverlapEffort& search)
         : directions_(directions), search_(search) {}
 
+    /// Of the surfaces of all directions.
     Overlap run() {
-        for (std::size_t i = 0; i < 2; ++i)
+        for (std::size_t i = 0; i < directions_.size(); ++i)
             if (directions_[i].solid->hasInside()) addSurface(i == 1);
+        return finish();
+    }
+    /// Of one piece of the first direction's surface.
+    Overlap runOver(const TurnedPiece& piece) {
+        addTurned(false, judged(of(false), piece));
+        return finish();
+    }
+
+private:
+    Overlap finish() {
         while (!waiting_.empty() && waiting_.top().bound > (1.0 + search_.share) * found_.depth + search_.tolerance &&
                found_.pieces < search_.most_pieces) {
             const Piece piece = waiting_.top();
@@ -150,7 +162,6 @@ public:
         return found_;
     }
 
-private:
     const Direction& of(bool b_in_a) const { return directions_[b_in_a ? 1 : 0]; }
 
     /// The exact faces of a shape in a shape; else the triangles.
@@ -289,7 +300,7 @@ private:
     struct Later {
         bool operator()(const Piece& a, const Piece& b) const { return a.bound < b.bound; }
     };
-    const std::array<Direction, 2>& directions_;
+    std::span<const Direction> directions_;
     const OverlapEffort& search_;
     Overlap found_;
     double left_out_ = 0.0;
@@ -321,6 +332,50 @@ struct Meeting {
     }
 };
 
+/// The point of a shape's surface that is nearest to `p` outside it, by steps down its distance.
+Vec3 footOn(const OverlapBody& body, Vec3 p) {
+    constexpr double kStep = 1e-6, kNear = 1e-12;  // [m]
+    for (int i = 0; i < 8; ++i) {
+        const double phi = body.signedDistance(p);
+        if (std::abs(phi) < kNear) break;
+        Vec3 slope;
+        for (int axis = 0; axis < 3; ++axis) {
+            const Vec3 aside = kStep * Vec3::Unit(axis);
+            slope[axis] = body.signedDistance(p + aside) - body.signedDistance(p - aside);
+        }
+        if (!(slope.norm() > 0.0)) break;
+        p -= phi * slope.normalized();
+    }
+    return p;
+}
+
+/// overlapOf() of a ring and a solid; nothing where the ring's circle may enter the solid, or the solid is of a kind
+/// that is not known to grow.
+std::optional<Overlap> overlapOfRing(const OverlapBody& ring, const Pose& X_WRing, const OverlapBody& solid,
+                                     const Pose& X_WSolid, const OverlapEffort& search) {
+    if (!ring.isShape() || !solid.isShape()) return std::nullopt;
+    const auto* torus = std::get_if<shape::Torus>(&ring.shape());
+    const double tube = torus != nullptr ? 0.5 * torus->tube_diameter : 0.0;
+    const auto around = torus != nullptr ? grown(solid.shape(), tube) : std::nullopt;
+    if (!around) return std::nullopt;
+    const OverlapBody near(solid.shape(), *around, tube);
+    const Pose X_WNear = X_WSolid * Pose{Quat::Identity(), Vec3(0.0, 0.0, -around->lift)};
+    const TurnedPiece::Circle circle{0.5 * torus->diameter, 0.0};
+    const std::array way{Direction{&near, &ring, X_WNear.inverse() * X_WRing, X_WNear}};
+    Overlap found = Search(way, search).runOver({{}, circle, circle});
+    if (!(found.bound < tube)) return std::nullopt;
+    if (!(found.depth > 0.0)) return found;
+    const Vec3 foot = X_WSolid * footOn(solid, X_WSolid.inverse() * found.point);
+    // The circle may pass nearer to the foot than where the search stopped. Where the way down is not unique the
+    // circle's point itself stands for it.
+    const double depth = -ring.signedDistance(X_WRing.inverse() * foot);
+    if (depth < found.depth - 1e-9 || std::abs(solid.signedDistance(X_WSolid.inverse() * foot)) > 1e-9) return found;
+    found.depth = depth;
+    found.bound = std::max(found.bound, depth);
+    found.point = foot;
+    return found;
+}
+
 }  // namespace
 
 OverlapBody::OverlapBody(const shape::Shape& shape, double chord_error)
@@ -330,6 +385,9 @@ OverlapBody::OverlapBody(const shape::Shape& shape, double chord_error)
       chord_error_(shape::chordError(shape, chord_error)) {}
 
 OverlapBody::OverlapBody(const geometry::TriangleMesh& mesh) : surface_(std::make_unique<const TriangleBoxes>(mesh)) {}
+
+OverlapBody::OverlapBody(const shape::Shape& shape, const GrownShape& grown, double by)
+    : shape_(std::make_unique<const shape::Shape>(grown.shape)), core_(Core{shape, grown.lift, by}) {}
 
 const TriangleBoxes& OverlapBody::surface() const {
     std::call_once(made_, [this] {
@@ -341,6 +399,7 @@ const TriangleBoxes& OverlapBody::surface() const {
 bool OverlapBody::hasInside() const { return shape_ == nullptr || !std::holds_alternative<shape::Sheet>(*shape_); }
 
 double OverlapBody::signedDistance(const Vec3& p) const {
+    if (core_) return shape::signedDistance(core_->shape, p - Vec3(0.0, 0.0, core_->lift)) - core_->by;
     if (shape_ != nullptr) return shape::signedDistance(*shape_, p);
     const double distance = surface_->nearest(p).distance;
     return surface_->contains(p) ? -distance : distance;
@@ -397,33 +456,35 @@ bool OverlapBody::isOutside(std::span<const Vec3> piece, double phi) const {
 
 Overlap overlapOf(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, const Pose& X_WB,
                   const OverlapEffort& search) {
+    if (const auto found = overlapOfRing(a, X_WA, b, X_WB, search)) return *found;
+    if (const auto found = overlapOfRing(b, X_WB, a, X_WA, search)) return *found;
     const Pose X_AB = X_WA.inverse() * X_WB;
-    return Search({Direction{&b, &a, X_AB.inverse(), X_WB}, Direction{&a, &b, X_AB, X_WA}}, search).run();
+    const std::array ways{Direction{&b, &a, X_AB.inverse(), X_WB}, Direction{&a, &b, X_AB, X_WA}};
+    return Search(ways, search).run();
 }
 
 bool surfacesMeet(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, const Pose& X_WB) {
     return Meeting{a.surface(), b.surface(), X_WB.inverse() * X_WA}.below(0);
 }
 
-std::shared_ptr<const OverlapBody> OverlapBodies::of(const scene::Part& part) {
+const OverlapBodies::Boxed& OverlapBodies::of(const scene::Part& part) {
     std::string key = part.shape ? shape::kindName(*part.shape) : std::to_string(geometry::contentHash(part.mesh));
     if (part.shape)
         for (const double value : shape::dimensions(*part.shape))
             key += " " + std::to_string(std::bit_cast<std::uint64_t>(value));
-    auto& body = bodies_[key];
-    if (!body)
-        body = part.shape ? std::make_shared<const OverlapBody>(*part.shape, chord_error_)
-                          : std::make_shared<const OverlapBody>(part.mesh);
-    return body;
+    Boxed& boxed = bodies_[key];
+    if (boxed.body) return boxed;
+    boxed.body = part.shape ? std::make_shared<const OverlapBody>(*part.shape, chord_error_)
+                            : std::make_shared<const OverlapBody>(part.mesh);
+    boxed.box = geometry::boundsOf(part.mesh);
+    boxed.box.low.array() -= part.chord_error;
+    boxed.box.high.array() += part.chord_error;
+    return boxed;
 }
 
 SceneOverlap::SceneOverlap(const scene::Scene& scene, OverlapBodies& bodies) : held_(scene.held) {
-    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-        geometry::Bounds box = geometry::boundsOf(scene.parts[i]->mesh);
-        box.low.array() -= scene.parts[i]->chord_error;
-        box.high.array() += scene.parts[i]->chord_error;
-        parts_.push_back({bodies.of(*scene.parts[i]), box, scene.spec.parts[i].X_WP});
-    }
+    for (std::size_t i = 0; i < scene.parts.size(); ++i)
+        parts_.push_back({bodies.of(*scene.parts[i]), scene.spec.parts[i].X_WP});
 }
 
 bool SceneOverlap::areApart(const Part& a, const Pose& X_WA, const Part& b, const Pose& X_WB) {
@@ -435,19 +496,33 @@ bool SceneOverlap::areApart(const Part& a, const Pose& X_WA, const Part& b, cons
     return beyond(a, X_WA, b, X_WB) || beyond(b, X_WB, a, X_WA);
 }
 
+void SceneOverlap::add(const Part& a, const Pose& X_WA, const Part& b, const OverlapEffort& search, Overlap& deepest) {
+    if (areApart(a, X_WA, b, b.X_W)) return;
+    OverlapEffort deeper = search;
+    deeper.ignore = std::max(search.ignore, deepest.depth);
+    const Overlap found = overlapOf(*a.body, X_WA, *b.body, b.X_W, deeper);
+    if (found.depth > deepest.depth) {
+        deepest.depth = found.depth;
+        deepest.point = found.point;
+    }
+    deepest.bound = std::max(deepest.bound, found.bound);
+    deepest.pieces += found.pieces;
+}
+
 Overlap SceneOverlap::at(const Pose& X_WG, const OverlapEffort& search) const {
     Overlap deepest;
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-        if (i == held_ || areApart(parts_[held_], X_WG, parts_[i], parts_[i].X_W)) continue;
-        OverlapEffort deeper = search;
-        deeper.ignore = std::max(search.ignore, deepest.depth);
-        const Overlap found = overlapOf(*parts_[held_].body, X_WG, *parts_[i].body, parts_[i].X_W, deeper);
-        if (found.depth > deepest.depth) {
-            deepest.depth = found.depth;
-            deepest.point = found.point;
-        }
-        deepest.bound = std::max(deepest.bound, found.bound);
-        deepest.pieces += found.pieces;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+        if (i != held_) add(parts_[held_], X_WG, parts_[i], search, deepest);
+    return deepest;
+}
+
+Overlap SceneOverlap::of(std::span<const std::size_t> held, const OverlapEffort& search) const {
+    Overlap deepest;
+    for (std::size_t k = 0; k < held.size(); ++k) {
+        const auto before = held.first(k);
+        for (std::size_t i = 0; i < parts_.size(); ++i)
+            if (i != held[k] && std::find(before.begin(), before.end(), i) == before.end())
+                add(parts_[held[k]], parts_[held[k]].X_W, parts_[i], search, deepest);
     }
     return deepest;
 }

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@
 #include "core/shape/shape.h"
 
 namespace passung::truth {
+
+struct GrownShape;
 
 /// How deep two parts reach into each other: the largest depth of any point of either surface in the other solid. It
 /// lies in [depth, bound] [m], of shapes give or take the chord errors of their triangles; depth is that of `point`,
@@ -44,12 +47,16 @@ public:
     OverlapBody(const shape::Shape& shape, double chord_error);
     /// @pre at least one triangle, finite vertices.
     explicit OverlapBody(const geometry::TriangleMesh& mesh);
+    /// All points within `by` [m] of a shape, in the frame of `grown` (grown_shape.h), without a surface.
+    OverlapBody(const shape::Shape& shape, const GrownShape& grown, double by);
 
     /// Those of a shape are made when first asked for. Thread-safe.
     const TriangleBoxes& surface() const;
     /// Empty for a mesh, and for kinds of shapes that have none.
     const SurfacePieces& pieces() const { return pieces_; }
     bool isShape() const { return shape_ != nullptr; }
+    /// @pre isShape()
+    const shape::Shape& shape() const { return *shape_; }
     double chordError() const { return chord_error_; }  // as reached [m]
     bool hasInside() const;
     /// Positive outside [m]. @pre hasInside().
@@ -71,7 +78,13 @@ public:
 private:
     bool isMetBy(std::span<const Vec3> piece) const;
 
+    struct Core {
+        shape::Shape shape;
+        double lift, by;  // [m]
+    };
+
     std::unique_ptr<const shape::Shape> shape_;  // none: a mesh
+    std::optional<Core> core_;                   // of one that was grown
     SurfacePieces pieces_;
     double asked_chord_ = 0.0, chord_error_ = 0.0;  // [m]
     mutable std::once_flag made_;
@@ -80,6 +93,10 @@ private:
 
 /// The overlap of A and B, by branch and bound over both surfaces, the deepest possible piece first: of each piece the
 /// depth of its middle, and a bound by the radius of its hull and by convex sets outside the solid. @pre poses finite.
+///   A torus is all points within the radius t of its tube of a circle. While no point of that circle is in the other
+/// solid S, let m be the least distance of the circle from S. Then no point of the torus is deeper in S than t - m, nor
+/// any of S in the torus, and the point of S that is nearest to the circle is as deep: the overlap is t - m. So only
+/// the circle is looked at, in the solid of all points within t of S. (Own.)
 Overlap overlapOf(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, const Pose& X_WB,
                   const OverlapEffort& search = {});
 
@@ -89,39 +106,43 @@ bool surfacesMeet(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, 
 /// Bodies of parts, each made once: of shapes with triangles within `chord_error` [m], or as near as tessellation gets.
 class OverlapBodies {
 public:
+    struct Boxed {
+        std::shared_ptr<const OverlapBody> body;  // shared_ptr: scenes that come and go share a body
+        geometry::Bounds box;                     // part frame, what the mesh is off the surface included
+    };
+
     explicit OverlapBodies(double chord_error = 5e-7) : chord_error_(chord_error) {}
-    /// shared_ptr: scenes that come and go share a body.
-    std::shared_ptr<const OverlapBody> of(const scene::Part& part);
+    const Boxed& of(const scene::Part& part);
 
 private:
     double chord_error_;
-    std::map<std::string, std::shared_ptr<const OverlapBody>> bodies_;
+    std::map<std::string, Boxed> bodies_;
 };
 
-/// The held part of a scene against all its obstacles.
+/// The held parts of a scene against all others.
 class SceneOverlap {
 public:
     /// The scene and `bodies` may go.
     SceneOverlap(const scene::Scene& scene, OverlapBodies& bodies);
 
     bool hasObstacles() const { return parts_.size() > 1; }
-    /// Another part than the one that the first hand begins with is the held one. `part`: its number in the scene.
-    void hold(std::size_t part) { held_ = part; }
-    /// Puts an obstacle elsewhere than where it starts.
+    /// Puts a part elsewhere than where it starts. `part`: its number in the scene.
     void place(std::size_t part, const Pose& X_W) { parts_[part].X_W = X_W; }
-    /// With the held part at X_WG. @pre a part is held
+    /// With the part that the first hand begins with at X_WG. @pre there is one
     Overlap at(const Pose& X_WG, const OverlapEffort& search = {}) const;
+    /// The deepest of all pairs of which one is among `held`, where all parts were placed.
+    Overlap of(std::span<const std::size_t> held, const OverlapEffort& search = {}) const;
     /// Do the held part's triangles meet any obstacle's?
     bool surfacesMeet(const Pose& X_WG) const;
 
 private:
-    struct Part {
-        std::shared_ptr<const OverlapBody> body;
-        geometry::Bounds box;  // part frame, what the mesh is off the surface included
+    struct Part : OverlapBodies::Boxed {
         Pose X_W;
     };
     /// By a ball about one part's box and the box of the other, either way.
     static bool areApart(const Part& a, const Pose& X_WA, const Part& b, const Pose& X_WB);
+    /// Adds the overlap of a pair to what was found of others.
+    static void add(const Part& a, const Pose& X_WA, const Part& b, const OverlapEffort& search, Overlap& deepest);
 
     std::vector<Part> parts_;
     std::size_t held_;

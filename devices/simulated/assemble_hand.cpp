@@ -24,6 +24,8 @@ constexpr double kCheckTime = 0.7;    // [s] beside the delay of seeing
 constexpr int kCorrections = 3;       // corrections before letting go
 constexpr int kSlides = 2;            // of a part that is in the bore, before it is taken out
 constexpr double kInside = 4e-3;      // [m] below the mouth, and no farther beside it: in the bore
+constexpr int kPushes = 2;            // in a row without depth: then each time a new look whether it is in
+constexpr double kInserted = 0.88;    // of the depth asked for, as seen: it is in
 constexpr double kTurned = 1e-4;      // [rad] the posture has changed: the handle can be turned
 
 /// Of the turns of `q_goal` about its z axis that make no difference the one nearest to `q`.
@@ -105,6 +107,12 @@ Pose AssembleHand::seenMouth() const noexcept {
 bool AssembleHand::isInBore() const noexcept {
     const Vec3 p_MP = seenMouth().inverse() * seenPart().p;
     return p_MP.z() < -kInside && p_MP.head<2>().norm() < kInside;
+}
+
+/// As deep as asked at a new look, whatever was believed of the mouth before.
+bool AssembleHand::looksInserted() noexcept {
+    const Vec3 p_MP = seenMouth().inverse() * Vec3(seenPart().p + errorOfLooking());
+    return p_MP.z() < -kInserted * step().insertion && p_MP.head<2>().norm() < kInside;
 }
 
 /// Of the origin of what is carried [m], so that it passes over the goal and over the parts beside the way.
@@ -194,7 +202,13 @@ void AssembleHand::bring() noexcept {
 
 void AssembleHand::insert(const Percept& percept) noexcept {
     Hand::choose(percept);
-    if (isInserted(percept)) enter(onGround() ? Stage::Open : Stage::Slide);
+    if (isInserted(percept)) return enter(onGround() ? Stage::Open : Stage::Slide);
+    if (stalls() < kPushes) looks_ = 0;
+    if (stalls() < kPushes + looks_) return;
+    ++looks_;
+    if (!looksInserted()) return;
+    stopPushing(percept);
+    enter(Stage::Open);
 }
 
 void AssembleHand::correct(const Percept& percept) noexcept {

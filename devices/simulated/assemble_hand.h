@@ -71,6 +71,7 @@ private:
     Pose seenMouth() const noexcept;
     Vec3 seenGrip() const noexcept { return seenPart() * part().grip; }
     bool isInBore() const noexcept;
+    bool looksInserted() noexcept;
     double clearHeight() const noexcept;
     Vec3 errorOfLooking() noexcept;
 

@@ -334,6 +334,11 @@ bool Hand::isInserted(const Percept& percept) const noexcept {
            (bottomed_ || !(seenDepth(percept) < task_.insertion_depth));
 }
 
+void Hand::stopPushing(const Percept& percept) noexcept {
+    p_MP_.z() = feltPosition(percept).z();
+    placeReference(p_MP_, turn_);
+}
+
 void Hand::startSliding(const Pose& X_WMouth, double depth, const Quat& q_WP) noexcept {
     startInserting(X_WMouth, depth, q_WP);
     p_MP_ = X_WM_.inverse() * X_WRef_.p;

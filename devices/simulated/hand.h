@@ -44,6 +44,10 @@ protected:
     bool isInserted(const Percept& percept) const noexcept;
     /// It went no deeper, near the asked depth.
     bool onGround() const noexcept { return bottomed_; }
+    /// How often in a row it was pushed and went no deeper.
+    int stalls() const noexcept { return stalls_; }
+    /// Pushes no more: means the part to be where it is felt.
+    void stopPushing(const Percept& percept) noexcept;
     /// As startInserting() with a part that is in the bore already; then slide() in place of choose().
     void startSliding(const Pose& X_WMouth, double depth, const Quat& q_WP) noexcept;
     /// One tick: along the bore, until the part is seen at the asked depth.

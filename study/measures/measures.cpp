@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -42,7 +43,7 @@ Vec3 handRotation(const TickRecord& from, const TickRecord& to) {
     return step.vec() * ((step.w() < 0.0 ? -angle : angle) / sine);
 }
 
-Trial cutTrial(std::span<const TickRecord> records, const TrialContext& context) {
+HandTicks cutTicks(std::span<const TickRecord> records, const TrialContext& context) {
     const auto firstFrom = [records](std::int64_t tick) {
         return std::partition_point(records.begin(), records.end(),
                                     [tick](const TickRecord& r) { return r.tick < tick; });
@@ -50,15 +51,32 @@ Trial cutTrial(std::span<const TickRecord> records, const TrialContext& context)
     const auto begin = firstFrom(context.start_tick);
     const auto end = std::max(begin, firstFrom(context.end_tick));
     const auto point_end = std::max(end, firstFrom(context.end_tick + 1));
-    Trial trial{context, {begin, end}, {begin, point_end}, 0, {}, {}, {}};
+    return {{begin, end}, {begin, point_end}};
+}
+
+double wayFromStart(const HandTicks& hand, const TickRecord& record) {
+    return (handPosition(record) - handPosition(hand.ticks.front())).norm();
+}
+
+Trial cutTrial(std::span<const TickRecord> records, const TrialContext& context,
+               std::span<const std::span<const TickRecord>> hands) {
+    const HandTicks judged = cutTicks(records, context);
+    Trial trial{context, judged.ticks, judged.points, {}, togetherAt(judged.ticks, hands), 0, {}, {}, {}};
+    for (const auto& hand : hands) trial.hands.push_back(cutTicks(hand, context));
+    if (hands.empty()) trial.hands.push_back(judged);
     PeriodClock clock(context.start_tick);
     const Pose X_TW = context.X_WT.inverse();
     const bool bore = std::holds_alternative<std::monostate>(context.form);
-    for (const TickRecord& record : trial.ticks) {
+    std::vector<std::size_t> at(trial.hands.size(), 0);  // of each hand's ticks
+    for (std::size_t i = 0; i < trial.ticks.size(); ++i) {
+        const TickRecord& record = trial.ticks[i];
         const std::int64_t time = clock.at(record);
-        const double way = (handPosition(record) - handPosition(trial.ticks.front())).norm();
-        if (!trial.leave && way > context.leave_radius) trial.leave = time;
-        if (!trial.touch && isContact(record)) trial.touch = time;
+        for (std::size_t hand = 0; hand < at.size() && !trial.leave; ++hand) {
+            const HandTicks& of_hand = trial.hands[hand];
+            for (; at[hand] < of_hand.ticks.size() && of_hand.ticks[at[hand]].tick <= record.tick; ++at[hand])
+                if (wayFromStart(of_hand, of_hand.ticks[at[hand]]) > context.leave_radius) trial.leave = time;
+        }
+        if (!trial.touch && trial.together[i].contact) trial.touch = time;
         if (bore && !trial.engagement && tipDepthInBore(record, X_TW, context.clearance) >= context.engagement_depth)
             trial.engagement = time;
     }
@@ -73,19 +91,22 @@ std::optional<std::int64_t> approachEnd(const Trial& trial) {
     return std::min(trial.touch.value_or(*trial.engagement), *trial.engagement);
 }
 
+/// Of all hands.
 template <class Quantity>
 Optional sumOverSteps(const Trial& trial, Quantity quantity) {
     if (trial.ticks.empty()) return std::nullopt;
     double sum = 0.0;
-    for (std::size_t i = 1; i < trial.points.size(); ++i) sum += quantity(trial.points[i - 1], trial.points[i]);
+    for (const HandTicks& hand : trial.hands)
+        for (std::size_t i = 1; i < hand.points.size(); ++i) sum += quantity(hand.points[i - 1], hand.points[i]);
     return sum;
 }
 
+/// A tick counts once, whatever hands.
 template <class Quantity>
 Optional sumOverTicks(const Trial& trial, Quantity quantity) {
     if (trial.ticks.empty()) return std::nullopt;
     double sum = 0.0;
-    for (const TickRecord& record : trial.ticks) sum += quantity(record);
+    for (const TickOfHands& tick : trial.together) sum += quantity(tick);
     return sum;
 }
 
@@ -93,10 +114,12 @@ template <double (*quantity)(const TickRecord&)>
 Optional meanInContact(const Trial& trial) {
     double sum = 0.0;
     std::int64_t count = 0;
-    for (const TickRecord& record : trial.ticks) {
-        if (!isContact(record)) continue;
-        sum += quantity(record);
-        ++count;
+    for (const HandTicks& hand : trial.hands) {
+        for (const TickRecord& record : hand.ticks) {
+            if (!isContact(record)) continue;
+            sum += quantity(record);
+            ++count;
+        }
     }
     if (count == 0) return std::nullopt;
     return sum / static_cast<double>(count);
@@ -106,14 +129,16 @@ template <double (*quantity)(const TickRecord&)>
 Optional largest(const Trial& trial) {
     if (trial.ticks.empty()) return std::nullopt;
     double result = 0.0;
-    for (const TickRecord& record : trial.ticks) result = std::max(result, quantity(record));
+    for (const HandTicks& hand : trial.hands)
+        for (const TickRecord& record : hand.ticks) result = std::max(result, quantity(record));
     return result;
 }
 
 Optional leastProxyGap(const Trial& trial) {
     Optional least;
-    for (const TickRecord& record : trial.ticks)
-        if (const double gap = record.proxy_gap_m; std::isfinite(gap)) least = std::min(gap, least.value_or(gap));
+    for (const HandTicks& hand : trial.hands)
+        for (const TickRecord& record : hand.ticks)
+            if (const double gap = record.proxy_gap_m; std::isfinite(gap)) least = std::min(gap, least.value_or(gap));
     return least;
 }
 
@@ -192,31 +217,28 @@ Optional rotationPath(const Trial& trial) {
 
 Optional contactOnsets(const Trial& trial) {
     bool before = false;
-    return sumOverTicks(trial, [&before](const TickRecord& record) {
-        const bool now = isContact(record);
-        const bool onset = now && !before;
-        before = now;
+    return sumOverTicks(trial, [&before](const TickOfHands& tick) {
+        const bool onset = tick.contact && !before;
+        before = tick.contact;
         return onset ? 1.0 : 0.0;
     });
 }
 
-/// Sum of a quantity times the periods that its tick stands for.
-template <class Quantity>
-Optional sumOverTime(const Trial& trial, Quantity quantity) {
-    if (trial.ticks.empty()) return std::nullopt;
-    double sum = 0.0;
-    for (std::size_t i = 0; i < trial.ticks.size(); ++i) sum += quantity(trial.ticks[i]) * trial.lengthOf(i);
-    return sum;
-}
-
 Optional contactTime(const Trial& trial) {
-    const Optional periods = sumOverTime(trial, [](const TickRecord& record) { return isContact(record) ? 1.0 : 0.0; });
-    if (!periods) return std::nullopt;
-    return *periods / kPeriodsPerSecond;
+    if (trial.ticks.empty()) return std::nullopt;
+    double periods = 0.0;
+    for (std::size_t i = 0; i < trial.ticks.size(); ++i)
+        if (trial.together[i].contact) periods += trial.lengthOf(i);
+    return periods / kPeriodsPerSecond;
 }
 
 Optional impulse(const Trial& trial) {
-    return sumOverTime(trial, [](const TickRecord& record) { return forceOf(record) * kTickSeconds; });
+    if (trial.ticks.empty()) return std::nullopt;
+    double sum = 0.0;
+    for (const HandTicks& hand : trial.hands)
+        for (std::size_t i = 0; i < hand.ticks.size(); ++i)
+            sum += forceOf(hand.ticks[i]) * kTickSeconds * hand.lengthOf(i);
+    return sum;
 }
 
 Optional work(const Trial& trial) {
@@ -229,15 +251,15 @@ Optional work(const Trial& trial) {
 
 Optional saturatedShare(const Trial& trial) {
     if (trial.ticks.empty()) return std::nullopt;
-    const auto saturated = std::count_if(trial.ticks.begin(), trial.ticks.end(),
-                                         [](const TickRecord& record) { return (record.status & kForceLimited) != 0; });
+    const auto saturated = std::count_if(trial.together.begin(), trial.together.end(),
+                                         [](const TickOfHands& tick) { return (tick.status & kForceLimited) != 0; });
     return static_cast<double>(saturated) / static_cast<double>(trial.ticks.size());
 }
 
 /// How many trial ticks carry a status bit.
 template <TickStatus bit>
 Optional ticksWith(const Trial& trial) {
-    return sumOverTicks(trial, [](const TickRecord& record) { return (record.status & bit) != 0 ? 1.0 : 0.0; });
+    return sumOverTicks(trial, [](const TickOfHands& tick) { return (tick.status & bit) != 0 ? 1.0 : 0.0; });
 }
 
 template <TickStatus bit>
@@ -369,6 +391,43 @@ std::vector<Measure> commonMeasures() {
     };
 }
 
+/// What a measure is of several hands; those that are not named are of the trial, or of the first hand's part.
+const char* ofHands(std::string_view name) {
+    constexpr const char* kSum = "the sum over the hands, each in the world";
+    constexpr const char* kLargest = "the largest over the hands";
+    constexpr const char* kMean = "the mean over the contact ticks of each hand, all together";
+    constexpr const char* kAny = "a tick counts once if it counts for any hand";
+    static const std::map<std::string_view, const char*> all = {
+        {"completion_time_s",
+         "from the first trial tick at which any hand is farther than the leave radius from its "
+         "own position at the start tick"},
+        {"approach_time_s", "a contact tick is one of any hand"},
+        {"search_time_s", "a contact tick is one of any hand"},
+        {"path_length_m", kSum},
+        {"rotation_path_rad", kSum},
+        {"contact_onsets", "a contact tick is one of any hand"},
+        {"contact_time_s", "a contact tick is one of any hand"},
+        {"mean_force_N", kMean},
+        {"peak_force_N", kLargest},
+        {"mean_torque_Nm", kMean},
+        {"peak_torque_Nm", kLargest},
+        {"mean_hand_depth_m", kMean},
+        {"max_hand_depth_m", kLargest},
+        {"mean_proxy_depth_m", kMean},
+        {"max_proxy_depth_m", kLargest},
+        {"min_proxy_gap_m", "the least over the hands"},
+        {"max_exact_overlap_m",
+         "the largest over the parts in any hand; a contact tick is one of any hand, "
+         "proxy_depth_m and |force| of a tick are the largest over the hands"},
+        {"exact_overlap_share", "a contact tick is one of any hand, and the parts in all hands are judged"},
+        {"impulse_Ns", kSum},
+        {"work_J", kSum},
+        {"saturated_share", kAny}};
+    if (countsTicks(name)) return kAny;
+    const auto found = all.find(name);
+    return found == all.end() ? "" : found->second;
+}
+
 /// Those of all trials and of pegs in holes, then those of the other types.
 const std::vector<Measure>& measures() {
     static const std::vector<Measure> all = [] {
@@ -376,6 +435,7 @@ const std::vector<Measure>& measures() {
         for (const auto& more :
              {passageMeasures(), contourMeasures(), placementMeasures(), pairMeasures(), assemblyMeasures()})
             list.insert(list.end(), more.begin(), more.end());
+        for (Measure& measure : list) measure.definition.of_hands = ofHands(measure.definition.name);
         return list;
     }();
     return all;
@@ -413,6 +473,15 @@ const std::vector<MeasureDefinition>& definitions() {
     return all;
 }
 
+std::string formulaOf(const MeasureDefinition& definition, std::size_t hands) {
+    if (hands < 2 || definition.of_hands.empty()) return definition.formula;
+    return definition.formula + "; of several hands: " + definition.of_hands;
+}
+
+int versionOf(const MeasureDefinition& definition, std::size_t hands) {
+    return definition.version + (hands < 2 || definition.of_hands.empty() ? 0 : 1);
+}
+
 bool isKnownUnwatched(std::string_view measure) {
     const auto& all = measures();
     const auto found =
@@ -423,8 +492,9 @@ bool isKnownUnwatched(std::string_view measure) {
 
 bool countsTicks(std::string_view measure) { return measure.ends_with("_ticks"); }
 
-std::vector<Value> computeMeasures(std::span<const TickRecord> records, const TrialContext& context) {
-    const Trial trial = cutTrial(records, context);
+std::vector<Value> computeMeasures(std::span<const TickRecord> records, const TrialContext& context,
+                                   std::span<const std::span<const TickRecord>> hands) {
+    const Trial trial = cutTrial(records, context, hands);
     std::vector<Value> values;
     values.reserve(definitions().size());
     for (const Measure& measure : measures()) {

@@ -69,8 +69,8 @@ struct Detection {
     friend bool operator==(const Detection&, const Detection&) = default;
 };
 
-/// How deep the held part and the obstacles truly reached into each other at a tick, as shown (X_WG of its record), and
-/// why this tick was judged. The depth lies in [depth, bound] [m].
+/// How deep the held parts and the obstacles truly reached into each other at a tick, as shown (X_WG of its records),
+/// and why this tick was judged. The depth lies in [depth, bound] [m].
 struct TickOverlap {
     std::int64_t tick = 0;
     bool every_20th = false;     // every 20th tick in contact
@@ -103,7 +103,13 @@ struct MeasureDefinition {
     std::string unit;     // "s", "m", "N", "1" …
     std::string formula;  // exact words: what is summed over which ticks
     int version = 1;
+    std::string of_hands = {};  // what it is in scenes of several hands; empty: as the formula says
 };
+
+/// The formula as it holds in a study whose scenes have so many hands at most, and its number: what is said of several
+/// hands counts as a change of the formula.
+std::string formulaOf(const MeasureDefinition& definition, std::size_t hands);
+int versionOf(const MeasureDefinition& definition, std::size_t hands);
 
 /// All measures, in column order.
 const std::vector<MeasureDefinition>& definitions();
@@ -121,11 +127,17 @@ bool isKnownUnwatched(std::string_view measure);
 bool countsTicks(std::string_view measure);
 
 /// Every measure of one trial from its recorded ticks, in the order of definitions().
+///   What hands do is measured of all of them: paths, impulse and work are summed, peaks are the largest of any hand,
+/// means are over the contact ticks of each (MeasureDefinition::of_hands). What a type of trial judges is the first
+/// hand's part.
 /// `records` are in order of their ticks; those outside [start_tick, end_tick] are ignored. The formulas take them as
 /// consecutive: where records are missing, a step spans the gap; times count a missing tick as one period, sums over
 /// ticks leave it out. Of a trial that is not watched all but success, finished, its times and the secondary task's are
 /// empty: isKnownUnwatched().
-/// Only stored values enter, so every measure can be computed again from an export of the samples.
-std::vector<Value> computeMeasures(std::span<const TickRecord> records, const TrialContext& context);
+/// `hands`: of a scene with several, what was recorded of each, the first included, in the world; `records` are then
+/// the first hand's as the trial is judged (session::HandsView). Empty: one hand, whose records they are. Only stored
+/// values enter, so every measure can be computed again from an export of the samples.
+std::vector<Value> computeMeasures(std::span<const TickRecord> records, const TrialContext& context,
+                                   std::span<const std::span<const TickRecord>> hands = {});
 
 }  // namespace passung::measures

@@ -20,6 +20,9 @@ inline constexpr double kOverlapLeftOpen = 3e-6;
 inline constexpr double kOverlapShareLeftOpen = 0.05;  // of the depth, besides
 
 /// Which trial ticks are judged by exact geometry after the trial, in the order of ticks; their depths are still 0.
-std::vector<TickOverlap> ticksToJudge(std::span<const TickRecord> records, const TrialContext& context);
+/// `records`: the first hand's; `hands`: of a scene with several, those of each, the first included: then a tick is in
+/// contact if any hand is, and its depth and force are the largest of any.
+std::vector<TickOverlap> ticksToJudge(std::span<const TickRecord> records, const TrialContext& context,
+                                      std::span<const std::span<const TickRecord>> hands = {});
 
 }  // namespace passung::measures

@@ -40,4 +40,10 @@ std::vector<StableStiffness> stableStiffnessOf(const StudyPlan& plan, std::span<
     return stable;
 }
 
+std::size_t mostHands(const StudyPlan& plan) {
+    std::size_t most = 1;
+    for (const Condition& condition : plan.conditions) most = std::max(most, condition.scene.handCount());
+    return most;
+}
+
 }  // namespace passung::plan

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,5 +15,8 @@ std::vector<NamedMesh> meshesOf(const StudyPlan& plan, const std::string& study)
 
 /// What the devices that conditions of the plan name display stably, by name; of `devices` those that are known.
 std::vector<StableStiffness> stableStiffnessOf(const StudyPlan& plan, std::span<const DeviceDescription> devices);
+
+/// Most hands of any condition's scene.
+std::size_t mostHands(const StudyPlan& plan);
 
 }  // namespace passung::plan

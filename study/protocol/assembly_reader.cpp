@@ -164,13 +164,15 @@ double beyondReach(const scene::HandSpec& hand, const DeviceDescription& device,
 class StepsCheck {
 public:
     StepsCheck(const StudyTables& tables, const plan::Condition& condition, std::span<const DeviceDescription> devices,
-               PartGeometries& geometries, Errors& errors)
-        : items_(tables.task.find("step")->items),
+               PartGeometries& geometries, Errors& errors, std::vector<std::string>& warnings)
+        : tables_(tables),
+          items_(tables.task.find("step")->items),
           condition_(condition),
           scene_(condition.scene),
           devices_(devices),
           geometries_(geometries),
-          errors_(errors) {
+          errors_(errors),
+          warnings_(warnings) {
         for (const scene::PartSpec& part : scene_.parts) X_WP_.push_back(part.X_WP);
     }
 
@@ -180,7 +182,12 @@ public:
             X_WP_[steps[i].part] = scene::goalOf(steps[i], X_WP_);
             checkReach(i);
         }
-        for (std::size_t i = 0; i < steps.size(); ++i) checkRoom(i);
+        for (std::size_t i = 0; i < steps.size(); ++i) {
+            checkRoom(i);
+            checkStarts(i);
+            checkDrawn(i);
+        }
+        checkLeaving();
     }
 
 private:
@@ -209,7 +216,7 @@ private:
     /// At success all parts with a step are where they belong, beside those that rest.
     void checkRoom(std::size_t i) {
         const scene::PartSpec& part = scene_.parts[step(i).part];
-        const double slack = std::max(scene_.contact.tolerance, step(i).position_tolerance);
+        const double slack = slackOf(i);
         for (std::size_t other = 0; other < scene_.parts.size(); ++other) {
             if (!isThere(other, i)) continue;
             scene::PartSpec obstacle = scene_.parts[other];
@@ -220,6 +227,76 @@ private:
                      fmt::format("there part {} stands {:.4g} mm deep in part {}, more than the tolerance of {:.4g} mm",
                                  part.name, 1e3 * depth, obstacle.name, 1e3 * slack));
         }
+    }
+
+    /// A part that starts at a step's goal and moves is in the way until a hand has taken it.
+    void checkStarts(std::size_t i) {
+        const scene::PartSpec& part = scene_.parts[step(i).part];
+        for (std::size_t other = 0; other < scene_.parts.size(); ++other) {
+            const scene::PartSpec& obstacle = scene_.parts[other];
+            if (other == step(i).part || !obstacle.moves() || isMovedBefore(other, i)) continue;
+            if (depthAt(part, X_WP_[step(i).part], obstacle, geometries_) <= slackOf(i)) continue;
+            std::string sentence = fmt::format(
+                "the goal of step {} is where part {} starts, which must be taken away first; after does "
+                "not say so",
+                nameOf(i), obstacle.name);
+            if (std::find(warnings_.begin(), warnings_.end(), sentence) == warnings_.end())
+                warnings_.push_back(std::move(sentence));
+        }
+    }
+
+    /// Who goes by what is drawn brings the part to where its goal is drawn.
+    void checkDrawn(std::size_t i) {
+        Vec3 off = scene_.parts[step(i).part].shown_offset;
+        if (step(i).into != scene::AssemblyStep::kWorld) off -= scene_.parts[step(i).into].shown_offset;
+        if (off.norm() <= step(i).position_tolerance) return;
+        const Node& place = *items_[i].find("part");
+        errors_.push_back(
+            errorAt(place.place, "task.step.part", valueText(place),
+                    fmt::format("is drawn {:.4g} mm beside where it is touched, as seen from its goal (shown_offset): "
+                                "must be at most the step's position_tolerance_mm, {:.4g}",
+                                1e3 * off.norm(), 1e3 * step(i).position_tolerance)));
+    }
+
+    /// Some hand has to leave the sphere about its start, or the completion time never begins.
+    void checkLeaving() {
+        double farthest = 0.0;
+        for (std::size_t hand = 0; hand < scene_.handCount(); ++hand) {
+            if (!scene_.canPick(hand)) continue;
+            const std::size_t held = scene_.heldBy(hand);
+            const Vec3 start =
+                held < scene_.parts.size() ? scene_.parts[held].X_WP.p : scene_.hand(hand).start_gate.X_WH.p;
+            for (const scene::AssemblyStep& asked : scene_.effects.pick.steps) {
+                const PartSurface* surface = geometries_.of(scene_.parts[asked.part]);
+                if (surface == nullptr) return;  // told elsewhere
+                for (const Pose& X : {scene_.parts[asked.part].X_WP, X_WP_[asked.part]})
+                    farthest = std::max(farthest, (X.p - start).norm() + surface->size.norm());
+            }
+        }
+        if (!(condition_.task.leave_radius >= farthest)) return;
+        const Node* place = tables_.task.find("leave_radius_mm");
+        if (place == nullptr) return;
+        errors_.push_back(errorAt(place->place, "task.leave_radius_mm", valueText(*place),
+                                  fmt::format("no part of a step starts or belongs outside this sphere about a hand's "
+                                              "start: must be less than {:.4g}",
+                                              1e3 * farthest)));
+    }
+
+    double slackOf(std::size_t i) const { return std::max(scene_.contact.tolerance, step(i).position_tolerance); }
+
+    std::string nameOf(std::size_t i) const { return std::get<plan::AssemblyTask>(condition_.task.form).steps[i].name; }
+
+    bool isMovedBefore(std::size_t part, std::size_t i) const {
+        const auto& steps = scene_.effects.pick.steps;
+        scene::StepSet before = step(i).after, known = 0;
+        while (before != known) {
+            known = before;
+            for (std::size_t k = 0; k < steps.size(); ++k)
+                if ((known & scene::stepBit(k)) != 0) before |= steps[k].after;
+        }
+        for (std::size_t k = 0; k < steps.size(); ++k)
+            if (steps[k].part == part && (before & scene::stepBit(k)) != 0) return true;
+        return false;
     }
 
     /// Once for each pair of steps.
@@ -235,20 +312,23 @@ private:
         errors_.push_back(errorAt(place.place, "task.step.position", valueText(place), std::move(message)));
     }
 
+    const StudyTables& tables_;
     const std::vector<Node>& items_;
     const plan::Condition& condition_;
     const scene::SceneSpec& scene_;
     std::span<const DeviceDescription> devices_;
     PartGeometries& geometries_;
     Errors& errors_;
+    std::vector<std::string>& warnings_;
     std::vector<Pose> X_WP_;  // at the end of the step that puts it there
 };
 
 }  // namespace
 
 void checkAssembly(const StudyTables& tables, const plan::Condition& condition,
-                   std::span<const DeviceDescription> devices, PartGeometries& geometries, Errors& errors) {
-    StepsCheck(tables, condition, devices, geometries, errors).run();
+                   std::span<const DeviceDescription> devices, PartGeometries& geometries, Errors& errors,
+                   std::vector<std::string>& warnings) {
+    StepsCheck(tables, condition, devices, geometries, errors, warnings).run();
 }
 
 }  // namespace passung::protocol

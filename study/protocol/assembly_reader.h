@@ -17,8 +17,10 @@ plan::AssemblyTask readAssembly(const TableReader& read, const StudyTables& tabl
                                 scene::SceneSpec& scene, Errors& errors);
 
 /// Adds an error for every step whose part cannot be there: its goal is out of the hands' reach, or overlaps a part
-/// that rests, or another step's at its goal. @pre the condition's trial is an assembly
+/// that rests, or another step's at its goal; or who goes by what is drawn misses it. To `warnings` a sentence for each
+/// goal where another part starts that need not have left by then. @pre the condition's trial is an assembly
 void checkAssembly(const StudyTables& tables, const plan::Condition& condition,
-                   std::span<const DeviceDescription> devices, PartGeometries& geometries, Errors& errors);
+                   std::span<const DeviceDescription> devices, PartGeometries& geometries, Errors& errors,
+                   std::vector<std::string>& warnings);
 
 }  // namespace passung::protocol

@@ -389,7 +389,7 @@ private:
         if (device != devices_.end() && root_.has("task")) {
             const std::size_t before = undoable_.size();
             if (std::holds_alternative<plan::AssemblyTask>(condition.task.form))
-                checkAssembly(tables, condition, devices_, geometries_, undoable_);
+                checkAssembly(tables, condition, devices_, geometries_, undoable_, warnings_);
             checkReach(tables, condition, *device, geometries_, undoable_, warnings_);
             if (undoable_.size() == before) checkBody(tables, condition, *device, geometries_, undoable_);
             checkHuman(tables, condition, *device, step != nullptr ? step->path : "", undoable_, warnings_);

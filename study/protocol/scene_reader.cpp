@@ -57,7 +57,12 @@ std::vector<scene::PartSpec> readParts(const TableReader& read, const Node& scen
     if (!read.has("part")) return parts;
     const Node* effects = scene.find("effects");
     if (effects != nullptr && effects->find("pick") != nullptr) return parts;
-    if (!full[0]) errors.push_back(errorAt(scene.place, read.pathOf("part"), "", "one part must be held: held = true"));
+    const bool pickable = std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.pickable; });
+    if (!full[0])
+        errors.push_back(errorAt(scene.place, read.pathOf("part"), "",
+                                 pickable ? "parts can be picked up, for which effects.pick is missing"
+                                          : "one part must be held: held = true; hands that pick parts up, as in an "
+                                            "assembly, need effects.pick instead"));
     for (std::size_t i = 0; i < other_hands.size(); ++i)
         if (!full[i + 1] && !other_hands[i].empty())
             errors.push_back(

@@ -56,7 +56,7 @@ inline constexpr std::array kTaskKeys{
     Key{"task.assembly", "hints", KeyType::Boolean, {}, "", "true", "True where the goals of the steps that may be done next are drawn."},
     Key{"task.assembly", "undo_button", KeyType::Integer, {1, scene::kButtons}, "", "(none)", "Number of the device's button, from 1, that takes back the step that was done last: its part can be picked up again. No effect may have it."},
     Key{"task.assembly", "timeout_s", KeyType::Number, kTimeout, "", "300", "Time from the start of the trial after which the trial ends without success."},
-    Key{"task.assembly", "leave_radius_mm", KeyType::Number, {.low = 0}, "", "0", "Radius of a sphere about the first hand's start; the completion time starts when the hand leaves the sphere."},
+    Key{"task.assembly", "leave_radius_mm", KeyType::Number, {.low = 0}, "", "0", "Radius of a sphere about each hand's start; the completion time starts when a hand leaves its sphere. Some part of a step must start or belong outside."},
 
     Key{"task.step", "part", KeyType::Text, {}, "", "!", "Name of a part with pickable = true; each belongs to one step."},
     Key{"task.step", "name", KeyType::Text, {}, "", "(the part's)", "Name of the step."},

@@ -12,6 +12,7 @@
 #include "study/measures/measures.h"
 #include "study/person/simulated_person.h"
 #include "study/plan/language.h"
+#include "study/plan/plan_contents.h"
 #include "study/run/command_socket.h"
 #include "study/run/files/builds.h"
 #include "study/run/files/known_names.h"
@@ -179,8 +180,7 @@ private:
         if (measured()) start.host = hostText();
         start.timing_measured = measured();
         start.numerics = tick::kNumerics;
-        for (const plan::Condition& condition : plan_->conditions)
-            start.hands = std::max(start.hands, condition.scene.handCount());
+        start.hands = plan::mostHands(*plan_);
         return start;
     }
 

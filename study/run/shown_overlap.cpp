@@ -24,6 +24,15 @@ bool areEngaged(const TickRecord& record, std::span<const TickRecord* const> oth
            });
 }
 
+/// The parts in hands, each once.
+std::vector<std::size_t> heldIn(const measures::PartsWatch& parts, std::size_t hands) {
+    std::vector<std::size_t> held;
+    for (std::size_t hand = 0; hand < hands; ++hand)
+        if (const auto part = parts.heldBy(hand); part && std::find(held.begin(), held.end(), *part) == held.end())
+            held.push_back(*part);
+    return held;
+}
+
 /// Which scene rendered each record: the turns as in tick::SceneSequence, from records alone.
 class TurnOf {
 public:
@@ -57,8 +66,9 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
     if (std::none_of(of_scenes.begin(), of_scenes.end(), [](const auto& scene) { return scene.hasObstacles(); }))
         return false;
     struct Shown {
-        std::size_t scene = 0, held = 0;
-        std::vector<Pose> X_WP;  // of every part of that scene
+        std::size_t scene = 0;
+        std::vector<std::size_t> held;  // parts in hands, each once
+        std::vector<Pose> X_WP;         // of every part of that scene
     };
     std::vector<measures::PartsWatch> parts;
     for (const scene::Scene& scene : scenes.scenes) parts.emplace_back(scene.spec);
@@ -75,7 +85,7 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
         parts[scene].follow(hands);
         while (judged != shown.end() && judged->first < record.tick) ++judged;
         if (judged == shown.end() || judged->first != record.tick) continue;
-        judged->second = {scene, parts[scene].heldBy(0).value_or(parts[scene].poses().size()), parts[scene].poses()};
+        judged->second = {scene, heldIn(parts[scene], hands.size()), parts[scene].poses()};
     }
     // Those that are likely the deepest first, should the work not suffice for all.
     std::vector<measures::TickOverlap*> order;
@@ -87,15 +97,12 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
     std::size_t left = picks ? kMostOfAssembly : kMostPieces;
     for (measures::TickOverlap* tick : order) {
         const Shown& there = shown.at(tick->tick);
-        if (there.held == there.X_WP.size()) continue;  // an empty hand touches nothing
         truth::SceneOverlap& scene = of_scenes[there.scene];
         for (std::size_t part = 0; part < there.X_WP.size(); ++part) scene.place(part, there.X_WP[part]);
-        scene.hold(there.held);
-        const truth::Overlap found =
-            scene.at(there.X_WP[there.held], {.tolerance = kTolerance,
-                                              .share = kShare,
-                                              .ignore = kIgnored,
-                                              .most_pieces = std::min(left, kMostPiecesOfTick)});
+        const truth::Overlap found = scene.of(there.held, {.tolerance = kTolerance,
+                                                           .share = kShare,
+                                                           .ignore = kIgnored,
+                                                           .most_pieces = std::min(left, kMostPiecesOfTick)});
         tick->depth = found.depth;
         tick->bound = found.bound;
         left -= std::min(left, found.pieces);

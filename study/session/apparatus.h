@@ -105,10 +105,10 @@ public:
     /// Stops the loop with a zero wrench and says how it went.
     virtual LoopHealth stop() = 0;
 
-    /// Measures by exact geometry how deep the held part and the obstacles reached into each other at these ticks of
+    /// Measures by exact geometry how deep the held parts and the obstacles reached into each other at these ticks of
     /// the attempt that stop() ended, as it was shown, and fills in depth and bound. `trial`: its records from the
-    /// start tick on; `others`: those of the other hands. False: nothing can be measured. The same records give the
-    /// same; it takes no longer than a pause between trials bears.
+    /// start tick on, where parts are picked up from tick 0 on; `others`: those of the other hands. False: nothing can
+    /// be measured. The same records give the same; it takes no longer than a pause between trials bears.
     virtual bool measureOverlaps(std::span<const TickRecord> trial, std::span<const std::vector<TickRecord>> others,
                                  std::span<measures::TickOverlap> ticks) {
         static_cast<void>(trial), static_cast<void>(others), static_cast<void>(ticks);

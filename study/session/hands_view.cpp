@@ -58,6 +58,15 @@ TickRecord HandsView::of(const TickRecord& record, std::span<const std::vector<T
     return seen;
 }
 
+std::vector<std::span<const TickRecord>> HandsView::recordsOfAll(
+    std::span<const TickRecord> first, std::span<const std::vector<TickRecord>> others) const {
+    std::vector<std::span<const TickRecord>> hands;
+    if (other_hands_ == 0) return hands;
+    hands.push_back(first);
+    for (std::size_t i = 0; i < other_hands_; ++i) hands.emplace_back(others[i]);
+    return hands;
+}
+
 std::array<const TickRecord*, scene::kMostHands> HandsView::all(const TickRecord& record,
                                                                 std::span<const std::vector<TickRecord>> others) const {
     std::array<const TickRecord*, scene::kMostHands> hands{&record};

@@ -31,6 +31,10 @@ public:
     /// tick included; of a tick that is missing there the one before it counts.
     TickRecord of(const TickRecord& record, std::span<const std::vector<TickRecord>> others) const;
 
+    /// The records of each hand of a scene with several, `first` included; empty of one hand.
+    std::vector<std::span<const TickRecord>> recordsOfAll(std::span<const TickRecord> first,
+                                                          std::span<const std::vector<TickRecord>> others) const;
+
     /// What was recorded of each hand at that tick, where it is looked at beside; else of the first alone.
     /// `others`: as of().
     std::array<const TickRecord*, scene::kMostHands> all(const TickRecord& record,

@@ -56,7 +56,7 @@ Result<Judgement> judgeAgain(const plan::Condition& condition, std::span<const s
     measures::TrialContext context = course.context();
     context.overlaps = stored.overlaps;
     if (secondary) context.detections = secondary->detections(course.startTime(), course.endTime());
-    return Judgement{context.outcome, measures::computeMeasures(of_trial, context),
+    return Judgement{context.outcome, measures::computeMeasures(of_trial, context, view.recordsOfAll(records, others)),
                      context.detections.value_or(std::vector<measures::Detection>{})};
 }
 

@@ -237,7 +237,9 @@ void Session::judge(std::span<const TickRecord> records) {
         if (attempt().course.ended()) continue;
         attempt().course.follow(attempt().view.of(record, attempt().others),
                                 attempt().view.all(record, attempt().others), events);
-        if (attempt().course.started()) attempt().records.push_back(record);
+        // What is laid down before the start is then where it was left.
+        if (attempt().course.started() || attempt().condition->scene.effects.picks())
+            attempt().records.push_back(record);
     }
     appendEvents(events);
 }
@@ -318,8 +320,9 @@ AttemptEnd Session::describeEnd(LoopHealth health) {
     }
     end.end_ns = session_ns_ + course.endTime() * kTickNanoseconds;
     end.outcome = context.outcome;
+    const auto hands = attempt().view.recordsOfAll(attempt().records, attempt().others);
     if (context.watched) {
-        std::vector<measures::TickOverlap> overlaps = measures::ticksToJudge(attempt().records, context);
+        std::vector<measures::TickOverlap> overlaps = measures::ticksToJudge(attempt().records, context, hands);
         if (!overlaps.empty() && apparatus_.measureOverlaps(attempt().records, attempt().others, overlaps))
             context.overlaps = overlaps;
     }
@@ -328,7 +331,7 @@ AttemptEnd Session::describeEnd(LoopHealth health) {
         end.steps = stepEnds(*attempt().condition, assembly->steps);
     std::vector<TickRecord> judged;
     for (const TickRecord& record : attempt().records) judged.push_back(attempt().view.of(record, attempt().others));
-    end.measures = measures::computeMeasures(judged, context);
+    end.measures = measures::computeMeasures(judged, context, hands);
     end.timing_measured = setup_.timing_measured;
 
     health.dropped_records = std::max(health.dropped_records, attempt().missing_ticks);

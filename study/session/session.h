@@ -105,7 +105,7 @@ private:
         const plan::Condition* condition;
         TrialCourse course;
         HandsView view;
-        std::vector<TickRecord> records = {};              // of the first hand in the running trial, for its measures
+        std::vector<TickRecord> records = {};  // of the first hand from the start on; where it picks up from tick 0
         std::vector<std::vector<TickRecord>> others = {};  // of the other hands, since the attempt began
         measures::PeriodClock clock = {};
         std::int64_t next_tick = 0;

@@ -8,6 +8,7 @@
 #include "core/base/regular_file.h"
 #include "study/measures/measures.h"
 #include "study/plan/participant.h"
+#include "study/plan/plan_contents.h"
 #include "study/store/rows/consent_rows.h"
 #include "study/store/rows/questionnaire_rows.h"
 #include "study/store/rows/slots.h"
@@ -113,19 +114,19 @@ void requireSeed(const Database& database, const std::string& sha256, std::uint6
                              std::to_string(seed) + ": use that seed or another database");
 }
 
-void insertMeasures(const Database& database) {
+void insertMeasures(const Database& database, std::size_t hands) {
     Statement find = database.prepare("SELECT formula_version FROM measure WHERE measure=?");
     std::int64_t position = 0;
     for (const measures::MeasureDefinition& definition : measures::definitions()) {
         if (!find.bind(definition.name).step()) {
             insertRow(database, "measure", Named{"measure", definition.name}, Named{"label", definition.label},
                       Named{"unit", definition.unit}, Named{"data_type", "number"},
-                      Named{"formula", definition.formula}, Named{"formula_version", definition.version},
-                      Named{"position", position});
-        } else if (find.integer(0) != definition.version) {
+                      Named{"formula", measures::formulaOf(definition, hands)},
+                      Named{"formula_version", measures::versionOf(definition, hands)}, Named{"position", position});
+        } else if (find.integer(0) != measures::versionOf(definition, hands)) {
             throw std::runtime_error("the database holds the measure " + definition.name + " by version " +
                                      find.text(0) + " of its formula, this program computes version " +
-                                     std::to_string(definition.version) + ": use a new database");
+                                     std::to_string(measures::versionOf(definition, hands)) + ": use a new database");
         }
         ++position;
     }
@@ -143,7 +144,7 @@ std::string importPlan(const Database& database, const plan::StudyPlan& plan, co
         requirePictures(database, sha256, pictures);
         requireQuestionnaires(database, sha256, plan);
         storeSeed(database, sha256, seed);
-        insertMeasures(database);
+        insertMeasures(database, plan::mostHands(plan));
         if (keep) transaction.commit();
         return sha256;
     }
@@ -161,7 +162,7 @@ std::string importPlan(const Database& database, const plan::StudyPlan& plan, co
     insertFactors(database, sha256, plan);
     insertConditions(database, sha256, plan);
     if (!choice.trials_only) insertQuestionnaires(database, plan);
-    insertMeasures(database);
+    insertMeasures(database, plan::mostHands(plan));
     declareMeasures(database, sha256, plan);
     for (const plan::StableStiffness& stable : plan.stable_stiffness)
         insertRow(database, "stable_stiffness", Named{"protocol_sha256", sha256}, Named{"device", stable.device},

@@ -27,8 +27,9 @@ Result<std::vector<MeshContent>> readMeshes(const plan::StudyPlan& plan);
 void requireSeed(const Database& database, const std::string& sha256, std::uint64_t seed);
 
 /// Measures belong to the whole file: one formula per name, or the numbers of one column would mean two things. Those
-/// that the file does not know yet, from before this program had them, are added.
-void insertMeasures(const Database& database);
+/// that the file does not know yet, from before this program had them, are added. `hands`: most of any condition's
+/// scene.
+void insertMeasures(const Database& database, std::size_t hands);
 
 /// In a transaction, kept or not; returns the SHA-256 of the text.
 std::string importPlan(const Database& database, const plan::StudyPlan& plan, const plan::RunChoice& choice,

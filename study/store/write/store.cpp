@@ -330,7 +330,7 @@ Result<Unfinished> Store::unfinished(const std::string& session_id) {
 Result<std::unique_ptr<SessionWriter>> Store::resumeSession(const SessionStart& start, std::int64_t used_ns) {
     auto rows = thread_->call([&](const Database& database) {
         Transaction transaction(database);
-        insertMeasures(database);  // the session may have begun with a program that had fewer
+        insertMeasures(database, start.hands);  // the session may have begun with a program that had fewer
         transaction.commit();
         return continueSession(database, start, used_ns, options_);
     });

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/truth/grown_shape.h"
 #include "analysis/truth/shape_outside.h"
 #include "core/base/random.h"
+#include "core/scene/part.h"
 
 namespace passung::truth {
 namespace {
@@ -214,6 +216,90 @@ TEST(ExactOverlap, IsThatOfDensePointsOfBothSurfacesForEveryPairOfShapes) {
             }
         }
     EXPECT_GT(met, 60);
+}
+
+TEST(ExactOverlap, OfARingInItsSeatIsFoundWithFewPieces) {
+    // Truth: closed form. The ring (R = 10 mm, t = 3.4 mm) in a seat of radius 13.5 mm, as in the shipped gearbox: flat
+    // and moved aside by d it reaches R + t + d - 13.5 mm into the wall; flat on the floor, sunk by s, it is s deep all
+    // around; about a peg of 12.5 mm that is moved aside by d it is 6.25 + t + d - R deep.
+    const shape::Torus torus{20 * mm, 6.8 * mm};
+    const OverlapBody ring(torus, 0.5 * um);
+    const OverlapBody seat(shape::BorePlate{44 * mm, 44 * mm, 12 * mm, 27 * mm, 12 * mm, 0.5 * mm}, 0.5 * um);
+    const OverlapBody floor(shape::BorePlate{44 * mm, 44 * mm, 12 * mm, 12.7 * mm, 10 * mm, 0.5 * mm}, 0.5 * um);
+    const OverlapBody block(shape::Box{44 * mm, 44 * mm, 12 * mm}, 0.5 * um);
+    const OverlapBody shaft(shape::Peg{12.5 * mm, 40 * mm, 0.5 * mm}, 0.5 * um);
+    const OverlapEffort effort{.tolerance = 2 * um, .share = 0.03, .ignore = 2 * um, .most_pieces = 20'000};
+    const auto expect = [&](const OverlapBody& other, const Pose& X, double depth, const char* what) {
+        const Overlap found = overlapOf(other, Pose{}, ring, X, effort);
+        EXPECT_LE(found.depth, std::max(depth, 0.0) + 1e-9) << what;
+        EXPECT_GE(found.bound, std::max(depth, 0.0) - 1e-9) << what;
+        EXPECT_LE(found.bound, 1.03 * found.depth + 2 * um + 1e-9) << what;
+        EXPECT_LT(found.pieces, 3000u) << what;
+        const Overlap turned = overlapOf(ring, X, other, Pose{}, effort);
+        EXPECT_EQ(turned.depth, found.depth) << what;
+        if (!(found.depth > 0.0)) return;
+        // Its point is on the other's surface and so deep in the ring.
+        EXPECT_NEAR(shape::signedDistance(torus, X.inverse() * found.point), -found.depth, 1e-12) << what;
+        EXPECT_NEAR(other.signedDistance(found.point), 0.0, 1e-9) << what;
+    };
+    for (const double deep : {-0.05 * mm, -0.05 * um, 0.0, 1 * um, 20 * um, 0.3 * mm}) {
+        expect(seat, at((0.1 * mm + deep) * 0.6, (0.1 * mm + deep) * 0.8, -6 * mm), deep, "wall");
+        expect(floor, at(0, 0, 3.4 * mm - deep), deep, "floor with a bore");
+        expect(block, at(1 * mm, 2 * mm, 9.4 * mm - deep), deep, "block");
+        expect(shaft, at(0.35 * mm + deep, 0, 15 * mm), deep, "shaft");
+    }
+}
+
+TEST(ExactOverlap, BoundsOfAGrownShapeHoldForEveryPointOfAHull) {
+    // Truth: the closed form of the shape itself: a point is as deep in what was grown by t as t exceeds its distance.
+    Random random(17);
+    int near = 0;
+    for (const shape::Shape& shape : kShapes)
+        for (const double by : {0.5 * mm, 3 * mm, 9 * mm}) {
+            const auto around = grown(shape, by);
+            if (!around) continue;
+            for (int i = 0; i < 2000; ++i) {
+                const Vec3 middle = randomPoint(random, 30 * mm);
+                const double size = (i % 3 == 0 ? 5.0 : i % 3 == 1 ? 0.5 : 0.01) * mm;
+                std::array<Vec3, 4> corners;
+                for (Vec3& corner : corners) corner = middle + randomPoint(random, size);
+                const Vec3 lift(0.0, 0.0, around->lift);
+                std::array<Vec3, 4> lifted;
+                for (std::size_t k = 0; k < 4; ++k) lifted[k] = corners[k] + lift;
+                const double bound = deepestOver(around->shape, lifted, middle + lift);
+                for (int k = 0; k < 30; ++k) {
+                    Eigen::Vector4d w = Eigen::Vector4d::NullaryExpr([&] { return random.uniform(0.0, 1.0); });
+                    w /= w.sum();
+                    const Vec3 p = w[0] * corners[0] + w[1] * corners[1] + w[2] * corners[2] + w[3] * corners[3];
+                    const double deep = by - shape::signedDistance(shape, p);
+                    ASSERT_LE(deep, bound + 1e-12) << shape::kindName(shape) << " grown by " << by;
+                    near += deep > 0.0 && deep < by;
+                }
+            }
+        }
+    EXPECT_GT(near, 10000);
+}
+
+TEST(ExactOverlap, OfSeveralHeldPartsIsTheDeepestOfAllPairsWithOneOfThem) {
+    // Truth: closed form: boxes of 20 mm side by side along x, each pair overlaps by what their distance lacks of
+    // 20 mm. Parts 0 and 1 reach 1 mm into each other, 1 and 2 by 2 mm, 2 and 3 by 3 mm.
+    scene::Scene scene;
+    for (const double x : {0.0, 19.0, 37.0, 54.0}) {
+        scene::PartSpec spec{
+            .name = "box", .geometry = shape::Box{20 * mm, 20 * mm, 20 * mm}, .X_WP = at(x * mm, 0, 0)};
+        scene.parts.push_back(std::make_shared<const scene::Part>(*scene::buildPart(spec, {})));
+        scene.spec.parts.push_back(spec);
+    }
+    OverlapBodies bodies;
+    const SceneOverlap overlap(scene, bodies);
+    const auto of = [&](std::vector<std::size_t> held) { return overlap.of(held, tight()).depth; };
+    EXPECT_NEAR(of({0}), 1 * mm, 1 * um);
+    EXPECT_NEAR(of({3}), 3 * mm, 1 * um);
+    EXPECT_NEAR(of({1}), 2 * mm, 1 * um);
+    EXPECT_NEAR(of({0, 1}), 2 * mm, 1 * um);
+    EXPECT_NEAR(of({0, 3}), 3 * mm, 1 * um);
+    EXPECT_NEAR(of({3, 2}), 3 * mm, 1 * um);
+    EXPECT_EQ(of({}), 0.0);
 }
 
 TEST(ExactOverlap, TheTreesAnswersAreThoseOfLoopsOverAllTriangles) {

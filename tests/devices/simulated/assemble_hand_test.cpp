@@ -39,6 +39,7 @@ struct Trial {
     double turn = 0.4;                 // [rad] of the block about z at its goal
     Vec3 shown_offset = Vec3::Zero();  // of the first peg
     bool guarded = false;
+    double bore = kPlate, depth = kDepth;  // [m] of the bores, and how deep pegs go in
 };
 
 struct Outcome {
@@ -60,8 +61,9 @@ constexpr double kLift = 2e-4;  // [m] what stands on the table is so far above 
 scene::SceneSpec sceneOf(const Trial& trial) {
     scene::SceneSpec spec;
     const shape::Peg peg{0.010, kPegLength, 5e-4};
-    const shape::Shape plate = trial.bores ? shape::Shape(shape::BorePlate{0.04, 0.04, kPlate, 0.0102, kPlate, 1e-3})
-                                           : shape::Shape(shape::Box{0.04, 0.04, kPlate});
+    const shape::Shape plate = trial.bores
+                                   ? shape::Shape(shape::BorePlate{0.04, 0.04, kPlate, 0.0102, trial.bore, 1e-3})
+                                   : shape::Shape(shape::Box{0.04, 0.04, kPlate});
     const double z = trial.bores ? kPlate : 0.5 * kPlate;
     spec.parts = {{.name = "table", .geometry = shape::Box{0.5, 0.5, 0.02}, .X_WP = at(0, 0, -0.01)},
                   {.name = "plate 1", .geometry = plate, .X_WP = at(0.0, -0.025, z)},
@@ -91,10 +93,10 @@ scene::SceneSpec sceneOf(const Trial& trial) {
     }
     std::vector<AssemblyStep>& steps = spec.effects.pick.steps;
     steps.resize(3);
-    steps[0] = {.part = kFirstPeg, .X_IGoal = at(0, -0.025, kPlate - kDepth), .folds = 0};
+    steps[0] = {.part = kFirstPeg, .X_IGoal = at(0, -0.025, kPlate - trial.depth), .folds = 0};
     steps[1] = {.part = kBlockPart, .X_IGoal = at(0.05, 0.0, 0.5 * kBlock + kLift), .folds = 2};
     steps[1].X_IGoal.q = rotationFromVector({0, 0, trial.turn});
-    steps[2] = {.part = kSecondPeg, .X_IGoal = at(0, 0.025, kPlate - kDepth), .folds = 0, .after = 1};
+    steps[2] = {.part = kSecondPeg, .X_IGoal = at(0, 0.025, kPlate - trial.depth), .folds = 0, .after = 1};
     for (AssemblyStep& step : steps) {
         step.position_tolerance = kTolerance;
         step.angle_tolerance = kTurn;
@@ -114,7 +116,7 @@ VisibleTask taskOf(const scene::SceneSpec& spec, const Trial& trial, std::size_t
         goal.steps.push_back({.part = static_cast<std::int32_t>(step.part),
                               .X_IGoal = step.X_IGoal,
                               .folds = step.folds,
-                              .insertion = step.part == kBlockPart ? 0.0 : kDepth,
+                              .insertion = step.part == kBlockPart ? 0.0 : trial.depth,
                               .after = step.after,
                               .mine = trial.hands == 1 || (step.part == kFirstPeg) == (hand == 0)});
     goal.hand = hand;
@@ -168,7 +170,7 @@ bool isThere(const Trial& trial, const Outcome& outcome) {
     const auto tilt = [&](Part part) { return std::acos(std::min(1.0, (outcome.parts[part].q * Vec3::UnitZ()).z())); };
     const Vec3 side = outcome.parts[kBlockPart].q * Vec3::UnitX();
     const double turn = std::remainder(std::atan2(side.y(), side.x()) - trial.turn, std::numbers::pi);
-    return near(kFirstPeg, {0, -0.025, kPlate - kDepth}) && near(kSecondPeg, {0, 0.025, kPlate - kDepth}) &&
+    return near(kFirstPeg, {0, -0.025, kPlate - trial.depth}) && near(kSecondPeg, {0, 0.025, kPlate - trial.depth}) &&
            near(kBlockPart, {0.05, 0, 0.5 * kBlock + kLift}) && tilt(kFirstPeg) < kTurn && tilt(kSecondPeg) < kTurn &&
            tilt(kBlockPart) < kTurn && std::abs(turn) < kTurn;
 }
@@ -261,6 +263,17 @@ TEST(AssembleHand, SameSeedMovesTheSameBitForBitAndAnotherOneElse) {
     EXPECT_EQ(first.hash, again.hash);
     EXPECT_EQ(first.time, again.time);
     EXPECT_NE(first.hash, other.hash);
+}
+
+TEST(AssembleHand, NobodyPushesOnTheGroundOfAShortBoreUntilTheEnd) {
+    // Truth: isThere(). Bores of 5 mm: who looked at the mouth 1 mm too high believes the peg not to be in.
+    int finished = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        const Outcome outcome = run({.seed = seed, .bore = 5e-3, .depth = 5e-3});
+        finished += outcome.finished ? 1 : 0;
+        if (!outcome.finished) std::printf("seed %d told %d\n", static_cast<int>(seed), static_cast<int>(outcome.told));
+    }
+    EXPECT_EQ(finished, 40);
 }
 
 TEST(AssembleHand, NobodyFinishesWithoutABore) {

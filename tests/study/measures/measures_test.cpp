@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -385,6 +386,83 @@ TEST(Measures, MissingTicksCountForNoDurationAndTheirStepIsStraight) {
     EXPECT_DOUBLE_EQ(*values.at("path_length_m"), 1000.0 * kStep);
     EXPECT_DOUBLE_EQ(*values.at("contact_time_s"), 0.9);
     EXPECT_DOUBLE_EQ(*values.at("trial_time_s"), 1.0);
+}
+
+/// The first hand rests with 1 N at ticks 100 ... 199; the other goes straight on, a step a tick, with 3 N and 0.25 Nm
+/// at ticks 150 ... 349.
+struct TwoHands {
+    std::vector<TickRecord> first = restingTicks(1001), other = restingTicks(1001);
+
+    TwoHands() {
+        for (std::size_t i = 0; i <= 1000; ++i) {
+            other[i].hand_position_m = {static_cast<float>(kStep * static_cast<double>(i)), 0.0f, 0.5f};
+            if (i >= 100 && i < 200) first[i].force_N = {1.0f, 0.0f, 0.0f};
+            if (i < 150 || i >= 350) continue;
+            other[i].force_N = {-3.0f, 0.0f, 0.0f};
+            other[i].torque_Nm = {0.0f, 0.25f, 0.0f};
+            other[i].proxy_depth_m = 0x1p-12f;
+            other[i].hand_depth_m = 0x1p-10f;
+            other[i].status |= kForceLimited;
+        }
+        other[160].proxy_gap_m = 0x1p-18f;
+    }
+    std::map<std::string, std::optional<double>> measured() const {
+        const std::array<std::span<const TickRecord>, 2> hands{first, other};
+        std::map<std::string, std::optional<double>> result;
+        for (const Value& value : computeMeasures(first, contextUntil(1000), hands)) result[value.name] = value.value;
+        return result;
+    }
+};
+
+TEST(Measures, WhatTheOtherHandDoesIsMeasuredToo) {
+    // Truth: closed form. Largest of any hand, sums over both; ticks 100 ... 349 are in contact; means over 100 contact
+    // ticks of one hand and 200 of the other; leaves 20 mm at step ceil(0.02 · 2^13) = 164. The other is pulled back by
+    // 3 N along 200 steps.
+    const auto values = TwoHands().measured();
+    EXPECT_DOUBLE_EQ(*values.at("peak_force_N"), 3.0);
+    EXPECT_DOUBLE_EQ(*values.at("peak_torque_Nm"), 0.25);
+    EXPECT_DOUBLE_EQ(*values.at("max_proxy_depth_m"), 0x1p-12);
+    EXPECT_DOUBLE_EQ(*values.at("max_hand_depth_m"), 0x1p-10);
+    EXPECT_DOUBLE_EQ(*values.at("min_proxy_gap_m"), 0x1p-18);
+    EXPECT_DOUBLE_EQ(*values.at("mean_force_N"), (100.0 * 1.0 + 200.0 * 3.0) / 300.0);
+    EXPECT_DOUBLE_EQ(*values.at("mean_proxy_depth_m"), 0x1p-12 * 200.0 / 300.0);
+    EXPECT_DOUBLE_EQ(*values.at("path_length_m"), 1000.0 * kStep);
+    EXPECT_DOUBLE_EQ(*values.at("contact_time_s"), 0.25);
+    EXPECT_DOUBLE_EQ(*values.at("contact_onsets"), 1.0);
+    EXPECT_NEAR(*values.at("impulse_Ns"), 0.1 * 1.0 + 0.2 * 3.0, 1e-12);
+    EXPECT_NEAR(*values.at("work_J"), 3.0 * 200.0 * kStep, 1e-12);
+    EXPECT_DOUBLE_EQ(*values.at("saturated_share"), 0.2);
+    EXPECT_DOUBLE_EQ(*values.at("force_limited_ticks"), 200.0);
+    EXPECT_DOUBLE_EQ(*values.at("completion_time_s"), 1.0 - 0.164);
+    EXPECT_DOUBLE_EQ(*values.at("approach_time_s"), 0.1);
+}
+
+TEST(Measures, OfTwoHandsTheLargestOfEitherAndEveryTwentiethTickOfEitherIsJudged) {
+    // Truth: closed form. Contact in ticks 100 ... 349, of the largest force and depth those of the other hand.
+    const TwoHands two;
+    const std::array<std::span<const TickRecord>, 2> hands{two.first, two.other};
+    const auto judged = ticksToJudge(two.first, contextUntil(1000), hands);
+    for (const TickOverlap& tick : judged) {
+        EXPECT_EQ(tick.every_20th, tick.tick % 20 == 0) << tick.tick;
+        EXPECT_EQ(tick.largest_force, tick.tick >= 150 && tick.tick < 170) << tick.tick;
+        EXPECT_EQ(tick.largest_depth, tick.largest_force) << tick.tick;
+    }
+    EXPECT_EQ(judged.size(), 13u + 20u - 1u) << "160 is among both";
+}
+
+TEST(Measures, OneHandAmongTheHandsIsAsOneHandAlone) {
+    // Truth: invariant, and the words of the formulas: those of one hand and their numbers stay.
+    const auto records = insertion();
+    TrialContext context = contextUntil(1200);
+    std::map<std::string, std::optional<double>> alone = measure(records, context), among;
+    const std::array<std::span<const TickRecord>, 1> hands{records};
+    for (const Value& value : computeMeasures(records, context, hands)) among[value.name] = value.value;
+    EXPECT_EQ(alone, among);
+    for (const MeasureDefinition& definition : definitions()) {
+        EXPECT_EQ(formulaOf(definition, 1), definition.formula);
+        EXPECT_EQ(versionOf(definition, 1), definition.version);
+        EXPECT_EQ(versionOf(definition, 2) > definition.version, formulaOf(definition, 2) != definition.formula);
+    }
 }
 
 TEST(Measures, TrialThatNeverStartedHasNoMeasureButItsFailure) {

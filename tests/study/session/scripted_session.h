@@ -34,7 +34,8 @@ public:
     std::vector<std::int64_t> trials_before;
     std::int64_t most_ticks_at_once = 0;
     std::int64_t waited_ticks = 0;
-    std::optional<Presentation> given;  // by a window; none: there is none
+    std::optional<Presentation> given;        // by a window; none: there is none
+    std::vector<std::int64_t> overlaps_from;  // first tick of the records that overlaps were to be measured by
 
     const DeviceDescription& device() const override { return device_; }
 
@@ -68,6 +69,11 @@ public:
         while (count < into.size() && taken_ < script_.size() && script_[taken_].tick < tick_)
             into[count++] = script_[taken_++];
         return count;
+    }
+    bool measureOverlaps(std::span<const TickRecord> trial, std::span<const std::vector<TickRecord>>,
+                         std::span<measures::TickOverlap>) override {
+        overlaps_from.push_back(trial.front().tick);
+        return false;
     }
     LoopHealth stop() override {
         log_.push_back("stop");

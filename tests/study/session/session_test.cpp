@@ -414,5 +414,15 @@ TEST_F(SessionTest, SessionThatIsDroppedInATrialStopsTheApparatus) {
     EXPECT_EQ(log_.back(), "stop");
 }
 
+TEST_F(SessionTest, WherePartsArePickedUpOverlapsAreMeasuredByAllRecordsOfTheAttempt) {
+    // Truth: definition. The trial starts at tick 100; a hand may carry parts before.
+    plan_.conditions[1].scene.effects.pick.reach = 0.005;
+    planTrials({successScript(), successScript()});
+    ASSERT_TRUE(runSession());
+    EXPECT_EQ(apparatus_.overlaps_from, (std::vector<std::int64_t>{100, 0}));
+    EXPECT_EQ(value(sink_.ends[0], "path_length_m"), value(sink_.ends[1], "path_length_m"));
+    EXPECT_EQ(value(sink_.ends[0], "trial_time_s"), value(sink_.ends[1], "trial_time_s"));
+}
+
 }  // namespace
 }  // namespace passung::session
