@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/base/types.h"
+#include "core/motion/metric.h"
+#include "core/scene/part.h"
+#include "core/surface/surface_proxy.h"
+
+namespace passung::path {
+
+/// A part that stands still while another one moves. @pre `part->clusters` exists; the part outlives what gets it.
+struct Standing {
+    const scene::Part* part = nullptr;
+    Pose X_WO;
+};
+
+/// How far the moving part is from what stands.
+struct Clearance {
+    double distance = 0.0;                // of the triangles, no less than the true one; 0: they meet [m]
+    double bound = 0.0;                   // proven of the true surfaces: chord errors are taken off [m]
+    std::optional<std::size_t> standing;  // the nearest one; none: none is as near as was asked
+    Vec3 where = Vec3::Zero();            // on it, world [m]
+};
+
+/// The room that a part has among others, by their triangles (of shapes within 1 µm of the true surface, or as near as
+/// 200 000 of them get). Nothing here tells inside from outside: who goes from a pose without overlap on ways that are
+/// free stays outside.
+class FreeRoom {
+public:
+    /// @pre `moving.clusters` exists; it outlives this.
+    FreeRoom(const scene::Part& moving, std::vector<Standing> standing);
+    ~FreeRoom();
+
+    /// No point of the moving part is farther from its origin [m].
+    double reach() const { return reach_; }
+    const motion::Metric& metric() const { return metric_; }
+    const std::vector<Standing>& standing() const { return standing_; }
+    /// Around the moving part at these poses and all that stands, world.
+    geometry::Bounds boundsWith(const Pose& a, const Pose& b) const;
+
+    /// Up to `within` [m].
+    Clearance clearanceAt(const Pose& X, double within) const;
+
+    /// True if it is proven that no triangles meet from `a` to `b`, origin straight and turn even, and at no pose
+    /// looked at they are nearer than `least` [m], > 0. From one of these to the next no point goes farther than the
+    /// clearance lets it. False too where that takes more than kMostPoses.
+    bool isFreeBetween(const Pose& a, const Pose& b, double least) const;
+    static constexpr int kMostPoses = 6000;
+
+    /// Pulls the part from `X` to `X_to`, as a hand pulls a god object: it slides along what it touches, and its
+    /// triangles meet none at any pose of the way (SurfaceProxy). The poses that it went through, from `X` on; straight
+    /// between them. Ends where it gets no farther.
+    std::vector<Pose> slide(const Pose& X, const Pose& X_to) const;
+
+private:
+    const scene::Part& moving_;
+    std::vector<Standing> standing_;
+    double reach_;
+    motion::Metric metric_;
+    std::unique_ptr<surface::SurfaceProxy> proxy_;
+};
+
+/// The pose at `share` of the way from `a` to `b`, origin straight and turn even.
+Pose poseBetween(const Pose& a, const Pose& b, double share);
+
+/// No point within `reach` of the origin goes farther from `a` to `b` [m].
+double wayBetween(const Pose& a, const Pose& b, double reach);
+
+}  // namespace passung::path

@@ -1,0 +1,79 @@
+#include "study/feasible/step_paths.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+
+#include "analysis/truth/exact_overlap.h"
+#include "core/path/search/path_search.h"
+
+namespace passung::feasible {
+
+namespace {
+
+using BuiltParts = std::vector<std::shared_ptr<const scene::Part>>;
+
+Result<BuiltParts> build(const scene::SceneSpec& scene, scene::PartCache& cache) {
+    BuiltParts parts;
+    for (const scene::PartSpec& part : scene.parts) {
+        auto built = cache.get(part, {.clusters = true});
+        if (!built) return built.errors();
+        parts.push_back(*std::move(built));
+    }
+    return parts;
+}
+
+/// Which part the moving one overlaps at an end of the path, and how deep; nothing if it does not.
+std::optional<std::string> overlapAt(const Pose& X, const char* end, const scene::SceneSpec& scene,
+                                     const PathProblem& problem, const BuiltParts& parts,
+                                     truth::OverlapBodies& bodies) {
+    const auto moving = bodies.of(*parts[problem.part]);
+    for (const StandingPart& other : problem.standing) {
+        const auto standing = bodies.of(*parts[other.part]);
+        const truth::Overlap overlap =
+            truth::overlapOf(*moving, X, *standing, other.X_WP, {.tolerance = kTouch, .share = 0.02, .ignore = kTouch});
+        if (overlap.depth > kTouch)
+            return fmt::format("the {} itself overlaps {} by {:.4g} µm (proof)", end, scene.parts[other.part].name,
+                               1e6 * overlap.depth);
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+void seed(const Settings& settings) { path::seedSearches(settings.seed); }
+
+Result<StepPath> pathOf(const scene::SceneSpec& scene, const PathProblem& problem, scene::PartCache& cache,
+                        const Settings& settings) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto parts = build(scene, cache);
+    if (!parts) return parts.errors();
+    StepPath answer;
+    answer.name = problem.name;
+    truth::OverlapBodies bodies;
+    auto overlap = overlapAt(problem.X_WGoal, "goal", scene, problem, *parts, bodies);
+    if (!overlap) overlap = overlapAt(problem.X_WStart, "start", scene, problem, *parts, bodies);
+    if (overlap) {
+        answer.why = *std::move(overlap);
+        answer.is_proof = true;
+    } else {
+        std::vector<path::Standing> standing;
+        for (const StandingPart& other : problem.standing) standing.push_back({(*parts)[other.part].get(), other.X_WP});
+        const path::FreeRoom room(*(*parts)[problem.part], std::move(standing));
+        auto found = path::findPath(room, problem.X_WStart, problem.X_WGoal, {settings.seconds});
+        if (found) {
+            answer.found = true;
+            answer.poses = *std::move(found);
+            answer.measures = path::measure(room, answer.poses);
+            if (const auto at = answer.measures.least.standing)
+                answer.nearest = scene.parts[problem.standing[*at].part].name;
+        } else {
+            answer.why = fmt::format("no path found within {:.3g} s (no proof)", settings.seconds);
+        }
+    }
+    answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return answer;
+}
+
+}  // namespace passung::feasible
