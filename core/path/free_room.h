@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "core/base/types.h"
+#include "core/geometry/mesh.h"
 #include "core/motion/metric.h"
 #include "core/scene/part.h"
-#include "core/surface/surface_proxy.h"
 
 namespace passung::path {
 
-/// A part that stands still while another one moves. @pre `part->clusters` exists; the part outlives what gets it.
+/// A part that stands still while another one moves. The part outlives what gets it.
 struct Standing {
     const scene::Part* part = nullptr;
     Pose X_WO;
@@ -20,19 +20,24 @@ struct Standing {
 
 /// How far the moving part is from what stands.
 struct Clearance {
-    double distance = 0.0;                // of the triangles, no less than the true one; 0: they meet [m]
+    double distance = 0.0;                // of closed forms beside an edge too small; of triangles no less than theirs;
+                                          // ≤ 0: they meet [m]
     double bound = 0.0;                   // proven of the true surfaces: chord errors are taken off [m]
     std::optional<std::size_t> standing;  // the nearest one; none: none is as near as was asked
-    Vec3 where = Vec3::Zero();            // on it, world [m]
+    Vec3 where = Vec3::Zero();            // there, world [m]
 };
 
-/// The room that a part has among others, by their triangles (of shapes within 1 µm of the true surface, or as near as
-/// 200 000 of them get). Nothing here tells inside from outside: who goes from a pose without overlap on ways that are
-/// free stays outside.
+/// True if the room of `moving` beside `standing` is found from the closed forms of both; else the clusters of both are
+/// needed (scene::PartNeeds::clusters). Threads have none here.
+bool inClosedForm(const scene::PartSpec& moving, const scene::PartSpec& standing);
+
+/// The room that a part has among others: of shapes by their closed forms, else by triangles (which are of shapes
+/// within 1 µm of the true surface, or as near as 200 000 of them get). Of triangles nothing tells inside from outside:
+/// who goes from a pose without overlap on ways that are free stays outside.
 class FreeRoom {
 public:
-    /// @pre `moving.clusters` exists; it outlives this.
-    FreeRoom(const scene::Part& moving, std::vector<Standing> standing);
+    /// `closed_form`: inClosedForm() of all pairs. @pre else all parts have clusters; `moving` outlives this.
+    FreeRoom(const scene::Part& moving, std::vector<Standing> standing, bool closed_form);
     ~FreeRoom();
 
     /// No point of the moving part is farther from its origin [m].
@@ -45,23 +50,26 @@ public:
     /// Up to `within` [m].
     Clearance clearanceAt(const Pose& X, double within) const;
 
-    /// True if it is proven that no triangles meet from `a` to `b`, origin straight and turn even, and at no pose
+    /// True if it is proven that nothing meets from `a` to `b`, origin straight and turn even, and at no pose
     /// looked at they are nearer than `least` [m], > 0. From one of these to the next no point goes farther than the
     /// clearance lets it. False too where that takes more than kMostPoses.
     bool isFreeBetween(const Pose& a, const Pose& b, double least) const;
     static constexpr int kMostPoses = 6000;
 
-    /// Pulls the part from `X` to `X_to`, as a hand pulls a god object: it slides along what it touches, and its
-    /// triangles meet none at any pose of the way (SurfaceProxy). The poses that it went through, from `X` on; straight
-    /// between them. Ends where it gets no farther.
+    /// Pulls the part from `X` to `X_to`, as a hand pulls a god object: it slides along what it touches, and crosses
+    /// nothing on the way (closed_form::PoseSolver, surface::SurfaceProxy). The poses that it went through, from `X`
+    /// on; straight between them. Ends where it gets no farther.
     std::vector<Pose> slide(const Pose& X, const Pose& X_to) const;
 
+    /// What finds contacts, of closed forms or of triangles.
+    class Contacts;
+
 private:
-    const scene::Part& moving_;
     std::vector<Standing> standing_;
+    geometry::Bounds box_;  // of the moving part
     double reach_;
     motion::Metric metric_;
-    std::unique_ptr<surface::SurfaceProxy> proxy_;
+    std::unique_ptr<Contacts> contacts_;
 };
 
 /// The pose at `share` of the way from `a` to `b`, origin straight and turn even.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 
@@ -14,10 +15,17 @@ namespace {
 
 using BuiltParts = std::vector<std::shared_ptr<const scene::Part>>;
 
-Result<BuiltParts> build(const scene::SceneSpec& scene, scene::PartCache& cache) {
+/// Do closed forms tell of the room of all pairs?
+bool inClosedForm(const scene::SceneSpec& scene, const PathProblem& problem) {
+    return std::all_of(problem.standing.begin(), problem.standing.end(), [&](const StandingPart& other) {
+        return path::inClosedForm(scene.parts[problem.part], scene.parts[other.part]);
+    });
+}
+
+Result<BuiltParts> build(const scene::SceneSpec& scene, bool closed_form, scene::PartCache& cache) {
     BuiltParts parts;
     for (const scene::PartSpec& part : scene.parts) {
-        auto built = cache.get(part, {.clusters = true});
+        auto built = cache.get(part, {.clusters = !closed_form});
         if (!built) return built.errors();
         parts.push_back(*std::move(built));
     }
@@ -47,7 +55,8 @@ void seed(const Settings& settings) { path::seedSearches(settings.seed); }
 Result<StepPath> pathOf(const scene::SceneSpec& scene, const PathProblem& problem, scene::PartCache& cache,
                         const Settings& settings) {
     const auto begin = std::chrono::steady_clock::now();
-    const auto parts = build(scene, cache);
+    const bool closed_form = inClosedForm(scene, problem);
+    const auto parts = build(scene, closed_form, cache);
     if (!parts) return parts.errors();
     StepPath answer;
     answer.name = problem.name;
@@ -60,7 +69,7 @@ Result<StepPath> pathOf(const scene::SceneSpec& scene, const PathProblem& proble
     } else {
         std::vector<path::Standing> standing;
         for (const StandingPart& other : problem.standing) standing.push_back({(*parts)[other.part].get(), other.X_WP});
-        const path::FreeRoom room(*(*parts)[problem.part], std::move(standing));
+        const path::FreeRoom room(*(*parts)[problem.part], std::move(standing), closed_form);
         auto found = path::findPath(room, problem.X_WStart, problem.X_WGoal, {settings.seconds});
         if (found) {
             answer.found = true;
