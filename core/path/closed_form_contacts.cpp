@@ -28,15 +28,15 @@ public:
         for (std::size_t i = 0; i < searches_.size(); ++i) {
             if ((X.p - pairs_[i].X_WO.p).norm() - held_reach_ - reaches_[i] >= least.distance) continue;
             found_->clear();
-            const double free = searches_[i].find(X, within, *found_);
+            searches_[i].find(X, within, *found_);
             for (const closed_form::Contact& contact : found_->all()) {
                 if (contact.gap >= least.distance) continue;
                 least.distance = contact.gap;
                 least.standing = i;
                 least.where = contact.point;
             }
-            least.bound = std::min({least.bound, free, least.distance});
         }
+        least.bound = least.distance;
         return least;
     }
 

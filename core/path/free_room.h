@@ -22,7 +22,8 @@ struct Standing {
 struct Clearance {
     double distance = 0.0;                // of closed forms beside an edge too small; of triangles no less than theirs;
                                           // ≤ 0: they meet [m]
-    double bound = 0.0;                   // proven of the true surfaces: chord errors are taken off [m]
+    double bound = 0.0;                   // the true distance is no less: of triangles proven, chord errors are
+                                          // taken off; of closed forms all minima that are found between samples [m]
     std::optional<std::size_t> standing;  // the nearest one; none: none is as near as was asked
     Vec3 where = Vec3::Zero();            // there, world [m]
 };

@@ -12,7 +12,7 @@ constexpr double kHalf = 0.5;
 void lookAlong(const FreeRoom& room, const Pose& a, const Pose& b, Clearance before, PathMeasures& found) {
     const double way = wayBetween(a, b, room.reach());
     for (double done = 0.0; done < way;) {
-        const double step = std::min(way - done, std::max(kDenseStep, kHalf * before.distance));
+        const double step = std::min(way - done, std::max(kDenseStep, kHalf * before.bound));
         done += step;
         const Pose X = poseBetween(a, b, done / way);
         const Clearance now = room.clearanceAt(X, kFar);

@@ -246,10 +246,28 @@ private:
     const FreeRoom& room_;
 };
 
+/// Straight from `a` to `b`, or along an axis of the world, across and back.
+std::optional<std::vector<Pose>> goAround(const FreeRoom& room, const Pose& a, const Pose& b, Clock::time_point end) {
+    if (room.isFreeBetween(a, b, kLeast)) return std::vector<Pose>{a, b};
+    for (const double reaches : {0.5, 1.0, 2.0, 4.0}) {
+        for (const int axis : {2, 0, 1}) {
+            for (const double sign : {1.0, -1.0}) {
+                if (Clock::now() > end) return std::nullopt;
+                const Vec3 away = sign * reaches * room.reach() * Vec3::Unit(axis);
+                const Pose a_away{a.q, a.p + away}, b_away{b.q, b.p + away};
+                if (room.isFreeBetween(a_away, b_away, kLeast) && room.isFreeBetween(a, a_away, kLeast) &&
+                    room.isFreeBetween(b_away, b, kLeast))
+                    return std::vector<Pose>{a, a_away, b_away, b};
+            }
+        }
+    }
+    return std::nullopt;
+}
+
 /// Straight ways from `a` to `b`.
 std::optional<std::vector<Pose>> join(const FreeRoom& room, const Pose& a, const Pose& b,
                                       const std::shared_ptr<ob::SE3StateSpace>& space, Clock::time_point end) {
-    if (room.isFreeBetween(a, b, kLeast)) return std::vector<Pose>{a, b};
+    if (auto way = goAround(room, a, b, end)) return way;
     auto si = std::make_shared<ob::SpaceInformation>(space);
     si->setStateValidityChecker([&room, &at = *si](const ob::State* state) {
         return at.satisfiesBounds(state) && room.clearanceAt(poseOf(state), 2.0 * kLeast).distance > kLeast;
