@@ -18,7 +18,7 @@ struct PathMeasures {
 };
 
 inline constexpr double kFar = 0.010;       // clearances are told up to this [m]
-inline constexpr double kDenseStep = 2e-5;  // between poses looked at no point goes farther, or less than half of what
+inline constexpr double kDenseStep = 1e-5;  // between poses looked at no point goes farther, or less than half of what
                                             // the clearance is there [m]
 
 /// By exact distances at dense poses. Between two of them, with bounds l and m, where no point goes farther than s, the

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <optional>
 
-#include "analysis/truth/exact_overlap.h"
 #include "core/path/search/path_search.h"
 
 namespace passung::feasible {
@@ -53,14 +52,13 @@ std::optional<std::string> overlapAt(const Pose& X, const char* end, const scene
 void seed(const Settings& settings) { path::seedSearches(settings.seed); }
 
 Result<StepPath> pathOf(const scene::SceneSpec& scene, const PathProblem& problem, scene::PartCache& cache,
-                        const Settings& settings) {
+                        truth::OverlapBodies& bodies, const Settings& settings) {
     const auto begin = std::chrono::steady_clock::now();
     const bool closed_form = inClosedForm(scene, problem);
     const auto parts = build(scene, closed_form, cache);
     if (!parts) return parts.errors();
     StepPath answer;
     answer.name = problem.name;
-    truth::OverlapBodies bodies;
     auto overlap = overlapAt(problem.X_WGoal, "goal", scene, problem, *parts, bodies);
     if (!overlap) overlap = overlapAt(problem.X_WStart, "start", scene, problem, *parts, bodies);
     if (overlap) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/truth/exact_overlap.h"
 #include "core/base/result.h"
 #include "core/path/path_measures.h"
 #include "core/scene/scene.h"
@@ -33,9 +34,10 @@ struct Settings {
 /// To be called once, before the first search of the program.
 void seed(const Settings& settings);
 
-/// The path of one step. Errors: a part that cannot be built, as scene::buildPart.
+/// What is made of parts is kept in `cache` and `bodies`, from step to step. Errors: a part that cannot be built, as
+/// scene::buildPart.
 Result<StepPath> pathOf(const scene::SceneSpec& scene, const PathProblem& problem, scene::PartCache& cache,
-                        const Settings& settings);
+                        truth::OverlapBodies& bodies, const Settings& settings);
 
 /// Overlaps up to this are contact [m]: triangles of shapes are 1 µm off the true surface at most.
 inline constexpr double kTouch = 2e-6;

@@ -81,10 +81,14 @@ void printPath(const feasible::StepPath& path) {
     const std::string where = path.nearest.empty() ? "nothing within 10 mm"
                                                    : fmt::format("{} at {:.4g}, {:.4g}, {:.4g} mm",
                                                                  printable(path.nearest), at.x(), at.y(), at.z());
-    fmt::print(
-        "  {:<16}{:<7}{:>10.1f}{:>10.1f}{:>14.1f}{:>9.1f}  {}{}\n", printable(path.name), "found", 1e3 * of.length,
-        kDegrees * of.turn, 1e6 * of.least.distance, path.seconds, where,
-        of.proven > 0.0 ? fmt::format("; nowhere less than {:.1f} um", 1e6 * of.proven) : "; slides along contacts");
+    constexpr double kTouching = 2e-6;  // [m]
+    std::string proven;
+    if (of.proven > 0.0)
+        proven = fmt::format("; nowhere less than {:.1f} um", 1e6 * of.proven);
+    else if (of.least.distance < kTouching)
+        proven = "; slides along contacts";
+    fmt::print("  {:<16}{:<7}{:>10.1f}{:>10.1f}{:>14.1f}{:>9.1f}  {}{}\n", printable(path.name), "found",
+               1e3 * of.length, kDegrees * of.turn, 1e6 * of.least.distance, path.seconds, where, proven);
 }
 
 std::string csvOf(const Group& group) {
@@ -144,11 +148,12 @@ int search(const Words& words) {
     }
     feasible::seed(words.settings);
     scene::PartCache cache(store.get());
+    truth::OverlapBodies bodies;
     for (Group& group : groups) {
         printHead(group);
         for (const feasible::PathProblem& problem : group.problems) {
             progress.show("searching a path for " + printable(problem.name));
-            const auto path = feasible::pathOf(*group.scene, problem, cache, words.settings);
+            const auto path = feasible::pathOf(*group.scene, problem, cache, bodies, words.settings);
             if (!path) return cli::fail(path.errors());
             progress.show("");
             printPath(*path);
