@@ -28,13 +28,14 @@ namespace ob = ompl::base;
 namespace oc = ompl::control;
 namespace og = ompl::geometric;
 
-constexpr double kOut = 0.25;            // of the part's reach: with so much room around it a part is out
-constexpr double kLeast = 5e-6;          // kept by straight ways [m]
-constexpr double kRoomAround = 2.0;      // reaches beyond all parts that a search may go
-constexpr double kLongestPull = 1.5;     // reaches
-constexpr double kMostTurn = 0.7;        // of a pull [rad]
-constexpr double kShareOfEscape = 0.35;  // of the time, for either end
-constexpr double kNoWay = 1e-5;          // [m]: a pull that takes it no farther is none
+constexpr double kOut = 0.25;             // of the part's reach: with so much room around it a part is out
+constexpr double kLeast = 5e-6;           // kept by straight ways [m]
+constexpr double kRoomAround = 2.0;       // reaches beyond all parts that a search may go
+constexpr double kLongestPull = 1.5;      // reaches
+constexpr double kMostTurn = 0.7;         // of a pull [rad]
+constexpr double kShareOfEscape = 0.25;   // of the time, for either end
+constexpr double kShareOfJoining = 0.65;  // of the time, until straight ways have joined them
+constexpr double kNoWay = 1e-5;           // [m]: a pull that takes it no farther is none
 
 using Clock = std::chrono::steady_clock;
 
@@ -153,6 +154,23 @@ private:
     const FreeRoom& room_;
 };
 
+/// From where a straight way leads to a pose.
+class Seen : public ob::GoalRegion {
+public:
+    Seen(const ob::SpaceInformationPtr& space, const FreeRoom& room, const Pose& X_to)
+        : GoalRegion(space), room_(room), X_to_(X_to) {
+        setThreshold(0.0);
+    }
+    double distanceGoal(const ob::State* state) const override {
+        const Pose X = poseOf(state);
+        return room_.isFreeBetween(X, X_to_, kLeast) ? 0.0 : wayBetween(X, X_to_, room_.reach());
+    }
+
+private:
+    const FreeRoom& room_;
+    Pose X_to_;
+};
+
 bool isOut(const FreeRoom& room, const Pose& X) {
     const double asked = kOut * room.reach();
     return room.clearanceAt(X, asked).distance >= asked;
@@ -196,11 +214,15 @@ std::vector<Pose> slidesOf(const FreeRoom& room, oc::PathControl& path) {
     return way;
 }
 
-/// From `X` to where there is room around the part, or as near to that as was come in the time.
-std::vector<Pose> leave(const FreeRoom& room, const Pose& X, const std::shared_ptr<ob::SE3StateSpace>& space,
-                        Clock::time_point end) {
-    if (isOut(room, X)) return {X};
-    if (auto way = pullStraightOut(room, X, end)) return *std::move(way);
+struct Slid {
+    std::vector<Pose> way;
+    bool arrived = false;  // at the goal; else as near to it as was come in the time
+};
+
+/// A tree of pulls from `X` on; `goalOf` makes the goal.
+template <class GoalOf>
+Slid growSlides(const FreeRoom& room, const Pose& X, const std::shared_ptr<ob::SE3StateSpace>& space,
+                Clock::time_point end, const GoalOf& goalOf) {
     auto pulls = std::make_shared<oc::RealVectorControlSpace>(space, 6);
     ob::RealVectorBounds most(6);
     most.setLow(-100.0);
@@ -218,14 +240,22 @@ std::vector<Pose> leave(const FreeRoom& room, const Pose& X, const std::shared_p
     ob::ScopedState<ob::SE3StateSpace> start(space);
     setPose(start.get(), X);
     problem->addStartState(start);
-    problem->setGoal(std::make_shared<Out>(si, room));
+    problem->setGoal(goalOf(si));
     oc::RRT planner(si);
     planner.setProblemDefinition(problem);
     planner.setup();
-    planner.solve(ob::timedPlannerTerminationCondition(secondsUntil(end)));
+    const auto solved = planner.solve(ob::timedPlannerTerminationCondition(secondsUntil(end)));
     const ob::PathPtr path = problem->getSolutionPath();
-    if (!path) return {X};
-    return slidesOf(room, *path->as<oc::PathControl>());
+    if (!path) return {{X}};
+    return {slidesOf(room, *path->as<oc::PathControl>()), solved == ob::PlannerStatus::EXACT_SOLUTION};
+}
+
+/// From `X` to where there is room around the part, or as near to that as was come in the time.
+std::vector<Pose> leave(const FreeRoom& room, const Pose& X, const std::shared_ptr<ob::SE3StateSpace>& space,
+                        Clock::time_point end) {
+    if (isOut(room, X)) return {X};
+    if (auto way = pullStraightOut(room, X, end)) return *std::move(way);
+    return growSlides(room, X, space, end, [&](const auto& si) { return std::make_shared<Out>(si, room); }).way;
 }
 
 /// A straight way, proven by distances.
@@ -309,8 +339,15 @@ std::optional<std::vector<Pose>> findPath(const FreeRoom& room, const Pose& X_st
     const auto space = spaceOf(room, X_start, X_goal);
     const std::vector<Pose> from_goal = leave(room, X_goal, space, share(kShareOfEscape));
     const std::vector<Pose> from_start = leave(room, X_start, space, share(2.0 * kShareOfEscape));
-    const auto between = join(room, from_start.back(), from_goal.back(), space, share(1.0));
-    if (!between) return std::nullopt;
+    const Pose &X_from = from_start.back(), &X_to = from_goal.back();
+    auto between = join(room, X_from, X_to, space, share(kShareOfJoining));
+    if (!between) {
+        Slid slid = growSlides(room, X_from, space, share(1.0),
+                               [&](const auto& si) { return std::make_shared<Seen>(si, room, X_to); });
+        if (!slid.arrived) return std::nullopt;
+        slid.way.push_back(X_to);
+        between = shorten(room, slid.way, kLeast);
+    }
     std::vector<Pose> path = shorten(room, from_start, kLeast);
     path.insert(path.end(), between->begin() + 1, between->end());
     const std::vector<Pose> in = shorten(room, from_goal, kLeast);

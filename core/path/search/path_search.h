@@ -22,7 +22,8 @@ void seedSearches(std::uint32_t seed);
 /// both ends are left by what slides along contacts: straight pulls along the axes of the part's frame first, then a
 /// tree of pulls (OMPL's control::RRT; LaValle 1998), whose steps are those of a god object (FreeRoom::slide). An end
 /// is left where nothing is within kOut of the part's reach. From there on RRTConnect (Kuffner and LaValle 2000) joins
-/// them by straight ways that are proven to be free. The path is made shorter in the end.
+/// them by straight ways that are proven to be free; where it does not, a tree of pulls from the start's side goes on
+/// until a straight way leads to the other. The path is made shorter in the end.
 std::optional<std::vector<Pose>> findPath(const FreeRoom& room, const Pose& X_start, const Pose& X_goal,
                                           const SearchLimits& limits);
 
