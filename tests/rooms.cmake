@@ -76,7 +76,7 @@ set(libraries
   "Boost.Math | ^boost/math/                     | analysis/stats tests                   | cpp"
   "spdlog   | ^spdlog/                         | study/run tests                        | cpp"
   "CLI11    | ^CLI/                            | ui/cli tests                           | cpp"
-  "OMPL     | ^ompl/                           | core/path/search                       | cpp"
+  "OMPL     | ^ompl/                           | core/path                              | cpp"
   "ODE      | ^ode/                            | tests                                  | cpp"
   "Bullet   | ^(btBullet|Bullet)               | tests                                  | cpp"
   "OpenVDB  | ^openvdb/                        | tests                                  | cpp"

@@ -10,10 +10,11 @@ bool isSame(const Pose& a, const Pose& b) { return a.p == b.p && a.q.coeffs() ==
 
 class ClosedFormContacts final : public FreeRoom::Contacts {
 public:
-    ClosedFormContacts(const scene::Part& moving, const std::vector<Standing>& standing, const motion::Metric& metric)
+    ClosedFormContacts(const scene::Part& moving, const std::vector<RestingPart>& standing,
+                       const motion::Metric& metric)
         : held_(*closed_form::solidOf(*moving.shape)), held_reach_(closed_form::reachOf(held_)) {
         solids_.reserve(standing.size());
-        for (const Standing& one : standing) {
+        for (const RestingPart& one : standing) {
             solids_.push_back(*closed_form::solidOf(*one.part->shape));
             reaches_.push_back(closed_form::reachOf(solids_.back()));
             pairs_.push_back({&held_, &solids_.back(), one.X_WO, metric});
@@ -23,8 +24,8 @@ public:
         found_ = std::make_unique<closed_form::PairContacts>();
     }
 
-    Clearance clearanceAt(const Pose& X, double within) override {
-        Clearance least{.distance = within, .bound = within, .standing = {}};
+    Nearness clearanceAt(const Pose& X, double within) override {
+        Nearness least{.distance = within, .bound = within, .standing = {}};
         for (std::size_t i = 0; i < searches_.size(); ++i) {
             if ((X.p - pairs_[i].X_WO.p).norm() - held_reach_ - reaches_[i] >= least.distance) continue;
             found_->clear();
@@ -63,7 +64,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<FreeRoom::Contacts> closedFormContacts(const scene::Part& moving, const std::vector<Standing>& standing,
+std::unique_ptr<FreeRoom::Contacts> closedFormContacts(const scene::Part& moving,
+                                                       const std::vector<RestingPart>& standing,
                                                        const motion::Metric& metric) {
     return std::make_unique<ClosedFormContacts>(moving, standing, metric);
 }

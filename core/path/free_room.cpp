@@ -52,13 +52,13 @@ bool inClosedForm(const scene::PartSpec& moving, const scene::PartSpec& standing
     return solid_a && solid_b && !closed_form::isThread(*solid_a) && !closed_form::isThread(*solid_b);
 }
 
-FreeRoom::FreeRoom(const scene::Part& moving, std::vector<Standing> standing, bool closed_form)
+FreeRoom::FreeRoom(const scene::Part& moving, std::vector<RestingPart> standing, bool closed_form)
     : standing_(std::move(standing)),
       box_(geometry::boundsOf(moving.mesh)),
       reach_(reachOf(moving.mesh)),
-      metric_{.radius = kTurnPerReach * reach_},
-      contacts_(closed_form ? closedFormContacts(moving, standing_, metric_)
-                            : surfaceContacts(moving, standing_, metric_)) {}
+      per_turn_(kTurnPerReach * reach_),
+      contacts_(closed_form ? closedFormContacts(moving, standing_, {.radius = per_turn_})
+                            : surfaceContacts(moving, standing_, {.radius = per_turn_})) {}
 
 FreeRoom::~FreeRoom() = default;
 
@@ -66,11 +66,11 @@ geometry::Bounds FreeRoom::boundsWith(const Pose& a, const Pose& b) const {
     geometry::Bounds bounds;
     extendBy(bounds, box_, a);
     extendBy(bounds, box_, b);
-    for (const Standing& one : standing_) extendBy(bounds, geometry::boundsOf(one.part->mesh), one.X_WO);
+    for (const RestingPart& one : standing_) extendBy(bounds, geometry::boundsOf(one.part->mesh), one.X_WO);
     return bounds;
 }
 
-Clearance FreeRoom::clearanceAt(const Pose& X, double within) const { return contacts_->clearanceAt(X, within); }
+Nearness FreeRoom::clearanceAt(const Pose& X, double within) const { return contacts_->clearanceAt(X, within); }
 
 bool FreeRoom::isFreeBetween(const Pose& a, const Pose& b, double least) const {
     const double way = wayBetween(a, b, reach_), within = std::max(2.0 * least, 0.5 * reach_);
@@ -88,14 +88,15 @@ bool FreeRoom::isFreeBetween(const Pose& a, const Pose& b, double least) const {
 }
 
 std::vector<Pose> FreeRoom::slide(const Pose& X, const Pose& X_to) const {
+    const motion::Metric metric{.radius = per_turn_};
     contacts_->begin(X);
     std::vector<Pose> way{X};
     std::vector<Pose> last{X};  // at the end of each tick
-    const motion::Motion whole = metric_.between(X, X_to);
-    const int ticks = std::max(1, static_cast<int>(std::ceil(metric_.wayOf(whole, reach_) / kTickWay)));
-    const double step = metric_.wayOf(whole, reach_) / ticks;
+    const motion::Motion whole = metric.between(X, X_to);
+    const int ticks = std::max(1, static_cast<int>(std::ceil(metric.wayOf(whole, reach_) / kTickWay)));
+    const double step = metric.wayOf(whole, reach_) / ticks;
     for (int tick = 1; tick <= ticks; ++tick) {
-        contacts_->pull(metric_.moved(X, whole, static_cast<double>(tick) / ticks), way);
+        contacts_->pull(metric.moved(X, whole, static_cast<double>(tick) / ticks), way);
         last.push_back(way.back());
         if (tick < kFewestTicks) continue;
         const auto before = static_cast<std::size_t>(std::max(0, tick - kLookBack));

@@ -7,19 +7,18 @@
 
 #include "core/base/types.h"
 #include "core/geometry/mesh.h"
-#include "core/motion/metric.h"
 #include "core/scene/part.h"
 
 namespace passung::path {
 
 /// A part that stands still while another one moves. The part outlives what gets it.
-struct Standing {
+struct RestingPart {
     const scene::Part* part = nullptr;
     Pose X_WO;
 };
 
 /// How far the moving part is from what stands.
-struct Clearance {
+struct Nearness {
     double distance = 0.0;                // of closed forms beside an edge too small; of triangles no less than theirs;
                                           // ≤ 0: they meet [m]
     double bound = 0.0;                   // the true distance is no less: of triangles proven, chord errors are
@@ -38,18 +37,17 @@ bool inClosedForm(const scene::PartSpec& moving, const scene::PartSpec& standing
 class FreeRoom {
 public:
     /// `closed_form`: inClosedForm() of all pairs. @pre else all parts have clusters; `moving` outlives this.
-    FreeRoom(const scene::Part& moving, std::vector<Standing> standing, bool closed_form);
+    FreeRoom(const scene::Part& moving, std::vector<RestingPart> standing, bool closed_form);
     ~FreeRoom();
 
     /// No point of the moving part is farther from its origin [m].
     double reach() const { return reach_; }
-    const motion::Metric& metric() const { return metric_; }
-    const std::vector<Standing>& standing() const { return standing_; }
+    const std::vector<RestingPart>& standing() const { return standing_; }
     /// Around the moving part at these poses and all that stands, world.
     geometry::Bounds boundsWith(const Pose& a, const Pose& b) const;
 
     /// Up to `within` [m].
-    Clearance clearanceAt(const Pose& X, double within) const;
+    Nearness clearanceAt(const Pose& X, double within) const;
 
     /// True if it is proven that nothing meets from `a` to `b`, origin straight and turn even, and at no pose
     /// looked at they are nearer than `least` [m], > 0. From one of these to the next no point goes farther than the
@@ -66,10 +64,10 @@ public:
     class Contacts;
 
 private:
-    std::vector<Standing> standing_;
+    std::vector<RestingPart> standing_;
     geometry::Bounds box_;  // of the moving part
     double reach_;
-    motion::Metric metric_;
+    double per_turn_;  // a turn counts as the way of a point so far from the origin [m]
     std::unique_ptr<Contacts> contacts_;
 };
 

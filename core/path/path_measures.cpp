@@ -9,13 +9,13 @@ namespace {
 constexpr double kHalf = 0.5;
 
 /// Looks along one piece of a path; begins behind its first pose.
-void lookAlong(const FreeRoom& room, const Pose& a, const Pose& b, Clearance before, PathMeasures& found) {
+void lookAlong(const FreeRoom& room, const Pose& a, const Pose& b, Nearness before, PathMeasures& found) {
     const double way = wayBetween(a, b, room.reach());
     for (double done = 0.0; done < way;) {
         const double step = std::min(way - done, std::max(kDenseStep, kHalf * before.bound));
         done += step;
         const Pose X = poseBetween(a, b, done / way);
-        const Clearance now = room.clearanceAt(X, kFar);
+        const Nearness now = room.clearanceAt(X, kFar);
         found.proven = std::min(found.proven, 0.5 * (before.bound + now.bound - step));
         ++found.looked_at;
         if (now.distance < found.least.distance) {

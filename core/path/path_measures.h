@@ -10,7 +10,7 @@ namespace passung::path {
 struct PathMeasures {
     double length = 0.0;               // of the origin's way [m]
     double turn = 0.0;                 // sum of all turns [rad]
-    Clearance least;                   // at the poses looked at
+    Nearness least;                    // at the poses looked at
     Pose X_least;                      // where that is
     double proven = 0.0;               // along all of the path; ≤ 0: between the poses nothing is proven by it [m]
     std::size_t looked_at = 0;         // poses

@@ -14,7 +14,7 @@ class FreeRoom::Contacts {
 public:
     virtual ~Contacts() = default;
     /// As FreeRoom::clearanceAt.
-    virtual Clearance clearanceAt(const Pose& X, double within) = 0;
+    virtual Nearness clearanceAt(const Pose& X, double within) = 0;
     /// The part is put at `X`.
     virtual void begin(const Pose& X) = 0;
     /// The hand goes on to `X_WH`, and the part after it; the poses that it goes through are added to `way`, whose last
@@ -23,10 +23,11 @@ public:
 };
 
 /// @pre all parts are shapes with a solid (inClosedForm).
-std::unique_ptr<FreeRoom::Contacts> closedFormContacts(const scene::Part& moving, const std::vector<Standing>& standing,
+std::unique_ptr<FreeRoom::Contacts> closedFormContacts(const scene::Part& moving,
+                                                       const std::vector<RestingPart>& standing,
                                                        const motion::Metric& metric);
 /// @pre all parts have clusters.
-std::unique_ptr<FreeRoom::Contacts> surfaceContacts(const scene::Part& moving, const std::vector<Standing>& standing,
+std::unique_ptr<FreeRoom::Contacts> surfaceContacts(const scene::Part& moving, const std::vector<RestingPart>& standing,
                                                     const motion::Metric& metric);
 
 }  // namespace passung::path

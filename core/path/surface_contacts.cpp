@@ -11,23 +11,23 @@ namespace {
 constexpr double kGap = 1e-6;    // held while it slides [m]
 constexpr int kBudget = 400000;  // of a tick: nobody waits for it
 
-std::vector<surface::SurfaceBody> bodiesOf(const std::vector<Standing>& standing) {
+std::vector<surface::SurfaceBody> bodiesOf(const std::vector<RestingPart>& standing) {
     std::vector<surface::SurfaceBody> bodies;
-    for (const Standing& one : standing) bodies.push_back({one.part->clusters.get(), one.X_WO});
+    for (const RestingPart& one : standing) bodies.push_back({one.part->clusters.get(), one.X_WO});
     return bodies;
 }
 
 class SurfaceContacts final : public FreeRoom::Contacts {
 public:
-    SurfaceContacts(const scene::Part& moving, const std::vector<Standing>& standing, const motion::Metric& metric)
+    SurfaceContacts(const scene::Part& moving, const std::vector<RestingPart>& standing, const motion::Metric& metric)
         : moving_(moving),
           standing_(standing),
           proxy_(*moving.clusters, bodiesOf(standing), {.metric = metric, .gap = kGap, .budget = kBudget}) {}
 
-    Clearance clearanceAt(const Pose& X, double within) override {
-        Clearance least{.distance = within, .bound = within, .standing = {}};
+    Nearness clearanceAt(const Pose& X, double within) override {
+        Nearness least{.distance = within, .bound = within, .standing = {}};
         for (std::size_t i = 0; i < standing_.size(); ++i) {
-            const Standing& one = standing_[i];
+            const RestingPart& one = standing_[i];
             const surface::NearestHulls now =
                 surface::nearestFaces(*moving_.clusters, *one.part->clusters, one.X_WO.inverse() * X, least.distance);
             const double chords = moving_.chord_error + one.part->chord_error;
@@ -54,13 +54,13 @@ public:
 
 private:
     const scene::Part& moving_;
-    std::vector<Standing> standing_;
+    std::vector<RestingPart> standing_;
     surface::SurfaceProxy proxy_;
 };
 
 }  // namespace
 
-std::unique_ptr<FreeRoom::Contacts> surfaceContacts(const scene::Part& moving, const std::vector<Standing>& standing,
+std::unique_ptr<FreeRoom::Contacts> surfaceContacts(const scene::Part& moving, const std::vector<RestingPart>& standing,
                                                     const motion::Metric& metric) {
     return std::make_unique<SurfaceContacts>(moving, standing, metric);
 }

@@ -12,7 +12,7 @@ namespace passung::feasible {
 
 namespace {
 
-using BuiltParts = std::vector<std::shared_ptr<const scene::Part>>;
+using StepParts = std::vector<std::shared_ptr<const scene::Part>>;
 
 /// Do closed forms tell of the room of all pairs?
 bool inClosedForm(const scene::SceneSpec& scene, const PathProblem& problem) {
@@ -21,8 +21,8 @@ bool inClosedForm(const scene::SceneSpec& scene, const PathProblem& problem) {
     });
 }
 
-Result<BuiltParts> build(const scene::SceneSpec& scene, bool closed_form, scene::PartCache& cache) {
-    BuiltParts parts;
+Result<StepParts> build(const scene::SceneSpec& scene, bool closed_form, scene::PartCache& cache) {
+    StepParts parts;
     for (const scene::PartSpec& part : scene.parts) {
         auto built = cache.get(part, {.clusters = !closed_form});
         if (!built) return built.errors();
@@ -33,8 +33,7 @@ Result<BuiltParts> build(const scene::SceneSpec& scene, bool closed_form, scene:
 
 /// Which part the moving one overlaps at an end of the path, and how deep; nothing if it does not.
 std::optional<std::string> overlapAt(const Pose& X, const char* end, const scene::SceneSpec& scene,
-                                     const PathProblem& problem, const BuiltParts& parts,
-                                     truth::OverlapBodies& bodies) {
+                                     const PathProblem& problem, const StepParts& parts, truth::OverlapBodies& bodies) {
     const auto moving = bodies.of(*parts[problem.part]);
     for (const StandingPart& other : problem.standing) {
         const auto standing = bodies.of(*parts[other.part]);
@@ -65,7 +64,7 @@ Result<StepPath> pathOf(const scene::SceneSpec& scene, const PathProblem& proble
         answer.why = *std::move(overlap);
         answer.is_proof = true;
     } else {
-        std::vector<path::Standing> standing;
+        std::vector<path::RestingPart> standing;
         for (const StandingPart& other : problem.standing) standing.push_back({(*parts)[other.part].get(), other.X_WP});
         const path::FreeRoom room(*(*parts)[problem.part], std::move(standing), closed_form);
         auto found = path::findPath(room, problem.X_WStart, problem.X_WGoal, {settings.seconds});

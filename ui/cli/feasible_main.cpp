@@ -42,15 +42,15 @@ Words wordsOf(char** argv) {
 }
 
 /// Conditions of one geometry, and what was found out for them.
-struct Group {
+struct GeometryGroup {
     std::vector<std::string> conditions;
     const scene::SceneSpec* scene = nullptr;
     std::vector<feasible::PathProblem> problems;
     std::vector<feasible::StepPath> paths = {};
 };
 
-std::vector<Group> groupsOf(const plan::StudyPlan& plan) {
-    std::vector<Group> groups;
+std::vector<GeometryGroup> groupsOf(const plan::StudyPlan& plan) {
+    std::vector<GeometryGroup> groups;
     std::map<std::string, std::size_t> known;
     const std::size_t count = plan::plannedConditions(plan);
     for (std::size_t i = 0; i < count; ++i) {
@@ -64,7 +64,7 @@ std::vector<Group> groupsOf(const plan::StudyPlan& plan) {
     return groups;
 }
 
-void printHead(const Group& group) {
+void printHead(const GeometryGroup& group) {
     fmt::print("\nconditions {}\n", printable(fmt::format("{}", fmt::join(group.conditions, ", "))));
     fmt::print("  {:<16}{:<7}{:>10}{:>10}{:>14}{:>9}  {}\n", "step", "path", "length mm", "turn deg", "clearance um",
                "seconds", "nearest");
@@ -91,7 +91,7 @@ void printPath(const feasible::StepPath& path) {
                1e3 * of.length, kDegrees * of.turn, 1e6 * of.least.distance, path.seconds, where, proven);
 }
 
-std::string csvOf(const Group& group) {
+std::string csvOf(const GeometryGroup& group) {
     std::string text = "step,waypoint,x_m,y_m,z_m,qw,qx,qy,qz,clearance_m\n";
     for (const feasible::StepPath& path : group.paths) {
         for (std::size_t i = 0; i < path.poses.size(); ++i) {
@@ -103,7 +103,7 @@ std::string csvOf(const Group& group) {
     return text;
 }
 
-Result<Done> write(const std::string& folder, const std::vector<Group>& groups) {
+Result<Done> write(const std::string& folder, const std::vector<GeometryGroup>& groups) {
     std::error_code problem;
     std::filesystem::create_directories(folder, problem);
     if (problem) return Error{.message = problem.message(), .file = folder};
@@ -120,9 +120,9 @@ Result<Done> write(const std::string& folder, const std::vector<Group>& groups) 
 }
 
 /// Steps without a path, a line each.
-Errors missing(const std::string& protocol, const std::vector<Group>& groups) {
+Errors missing(const std::string& protocol, const std::vector<GeometryGroup>& groups) {
     Errors errors;
-    for (const Group& group : groups)
+    for (const GeometryGroup& group : groups)
         for (const feasible::StepPath& path : group.paths)
             if (!path.found)
                 errors.push_back(
@@ -141,7 +141,7 @@ int search(const Words& words) {
     const auto plan =
         progress.whileReading(words.protocol, [&] { return run::readProtocol(words.protocol, words.import_limits); });
     if (!plan) return cli::fail(plan.errors());
-    std::vector<Group> groups = groupsOf(*plan);
+    std::vector<GeometryGroup> groups = groupsOf(*plan);
     if (groups.empty()) {
         fmt::print("there is nothing to search: no condition is an assembly or a peg_in_hole\n");
         return 0;
@@ -149,7 +149,7 @@ int search(const Words& words) {
     feasible::seed(words.settings);
     scene::PartCache cache(store.get());
     truth::OverlapBodies bodies;
-    for (Group& group : groups) {
+    for (GeometryGroup& group : groups) {
         printHead(group);
         for (const feasible::PathProblem& problem : group.problems) {
             progress.show("searching a path for " + printable(problem.name));

@@ -37,10 +37,10 @@ constexpr double kShareOfEscape = 0.25;   // of the time, for either end
 constexpr double kShareOfJoining = 0.65;  // of the time, until straight ways have joined them
 constexpr double kNoWay = 1e-5;           // [m]: a pull that takes it no farther is none
 
-using Clock = std::chrono::steady_clock;
+using SearchClock = std::chrono::steady_clock;
 
-double secondsUntil(Clock::time_point end) {
-    return std::max(0.0, std::chrono::duration<double>(end - Clock::now()).count());
+double secondsUntil(SearchClock::time_point end) {
+    return std::max(0.0, std::chrono::duration<double>(end - SearchClock::now()).count());
 }
 
 Pose poseOf(const ob::State* state) {
@@ -189,11 +189,11 @@ bool endWhereOut(const FreeRoom& room, std::vector<Pose>& way) {
 }
 
 /// Straight pulls along the axes of the part's frame, far enough to come out of what is as deep as the room is wide.
-std::optional<std::vector<Pose>> pullStraightOut(const FreeRoom& room, const Pose& X, Clock::time_point end) {
+std::optional<std::vector<Pose>> pullStraightOut(const FreeRoom& room, const Pose& X, SearchClock::time_point end) {
     const double far = 3.0 * room.reach();
     for (const double sign : {1.0, -1.0}) {
         for (const int axis : {2, 0, 1}) {
-            if (Clock::now() > end) return std::nullopt;
+            if (SearchClock::now() > end) return std::nullopt;
             Pull pull = Pull::Zero();
             pull.head<3>() = sign * far * (X.q * Vec3(Vec3::Unit(axis)));
             auto way = room.slide(X, pulled(X, pull));
@@ -222,7 +222,7 @@ struct Slid {
 /// A tree of pulls from `X` on; `goalOf` makes the goal.
 template <class GoalOf>
 Slid growSlides(const FreeRoom& room, const Pose& X, const std::shared_ptr<ob::SE3StateSpace>& space,
-                Clock::time_point end, const GoalOf& goalOf) {
+                SearchClock::time_point end, const GoalOf& goalOf) {
     auto pulls = std::make_shared<oc::RealVectorControlSpace>(space, 6);
     ob::RealVectorBounds most(6);
     most.setLow(-100.0);
@@ -252,7 +252,7 @@ Slid growSlides(const FreeRoom& room, const Pose& X, const std::shared_ptr<ob::S
 
 /// From `X` to where there is room around the part, or as near to that as was come in the time.
 std::vector<Pose> leave(const FreeRoom& room, const Pose& X, const std::shared_ptr<ob::SE3StateSpace>& space,
-                        Clock::time_point end) {
+                        SearchClock::time_point end) {
     if (isOut(room, X)) return {X};
     if (auto way = pullStraightOut(room, X, end)) return *std::move(way);
     return growSlides(room, X, space, end, [&](const auto& si) { return std::make_shared<Out>(si, room); }).way;
@@ -277,12 +277,13 @@ private:
 };
 
 /// Straight from `a` to `b`, or along an axis of the world, across and back.
-std::optional<std::vector<Pose>> goAround(const FreeRoom& room, const Pose& a, const Pose& b, Clock::time_point end) {
+std::optional<std::vector<Pose>> goAround(const FreeRoom& room, const Pose& a, const Pose& b,
+                                          SearchClock::time_point end) {
     if (room.isFreeBetween(a, b, kLeast)) return std::vector<Pose>{a, b};
     for (const double reaches : {0.5, 1.0, 2.0, 4.0}) {
         for (const int axis : {2, 0, 1}) {
             for (const double sign : {1.0, -1.0}) {
-                if (Clock::now() > end) return std::nullopt;
+                if (SearchClock::now() > end) return std::nullopt;
                 const Vec3 away = sign * reaches * room.reach() * Vec3::Unit(axis);
                 const Pose a_away{a.q, a.p + away}, b_away{b.q, b.p + away};
                 if (room.isFreeBetween(a_away, b_away, kLeast) && room.isFreeBetween(a, a_away, kLeast) &&
@@ -296,7 +297,7 @@ std::optional<std::vector<Pose>> goAround(const FreeRoom& room, const Pose& a, c
 
 /// Straight ways from `a` to `b`.
 std::optional<std::vector<Pose>> join(const FreeRoom& room, const Pose& a, const Pose& b,
-                                      const std::shared_ptr<ob::SE3StateSpace>& space, Clock::time_point end) {
+                                      const std::shared_ptr<ob::SE3StateSpace>& space, SearchClock::time_point end) {
     if (auto way = goAround(room, a, b, end)) return way;
     auto si = std::make_shared<ob::SpaceInformation>(space);
     si->setStateValidityChecker([&room, &at = *si](const ob::State* state) {
@@ -332,9 +333,9 @@ void seedSearches(std::uint32_t seed) {
 
 std::optional<std::vector<Pose>> findPath(const FreeRoom& room, const Pose& X_start, const Pose& X_goal,
                                           const SearchLimits& limits) {
-    const auto share = [&, begin = Clock::now()](double of_all) {
-        return begin +
-               std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(of_all * limits.seconds));
+    const auto share = [&, begin = SearchClock::now()](double of_all) {
+        return begin + std::chrono::duration_cast<SearchClock::duration>(
+                           std::chrono::duration<double>(of_all * limits.seconds));
     };
     const auto space = spaceOf(room, X_start, X_goal);
     const std::vector<Pose> from_goal = leave(room, X_goal, space, share(kShareOfEscape));
