@@ -7,6 +7,7 @@ namespace passung::path {
 namespace {
 
 constexpr double kHalf = 0.5;
+constexpr double kKept = 0.95;  // of the clearance of what is left out
 
 /// Looks along one piece of a path; begins behind its first pose.
 void lookAlong(const FreeRoom& room, const Pose& a, const Pose& b, Nearness before, PathMeasures& found) {
@@ -55,7 +56,7 @@ std::vector<Pose> shorten(const FreeRoom& room, const std::vector<Pose>& path, d
         for (; to > i + 1; to = i + std::max<std::size_t>(1, (to - i) / 2)) {
             const double before = *std::min_element(clear.begin() + static_cast<std::ptrdiff_t>(i),
                                                     clear.begin() + static_cast<std::ptrdiff_t>(to) + 1);
-            const double enough = std::max(least, kHalf * before);
+            const double enough = std::max(least, kKept * before);
             if (room.isFreeBetween(path[i], path[to], enough)) break;
         }
         kept.push_back(path[to]);

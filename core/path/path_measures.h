@@ -25,8 +25,8 @@ inline constexpr double kDenseStep = 1e-5;  // between poses looked at no point 
 /// true clearance is nowhere less than (l + m - s) / 2: each pose between is within s' of one and s - s' of the other.
 PathMeasures measure(const FreeRoom& room, const std::vector<Pose>& path);
 
-/// Waypoints left out where the straight way past them is proven to be free, and no nearer than `least` [m] or than
-/// half of what the path itself comes to.
+/// Waypoints left out where the straight way past them is proven to be free, and no nearer than `least` [m] and 0.95
+/// of what comes nearest in what is left out.
 std::vector<Pose> shorten(const FreeRoom& room, const std::vector<Pose>& path, double least);
 
 }  // namespace passung::path

@@ -349,11 +349,10 @@ std::optional<std::vector<Pose>> findPath(const FreeRoom& room, const Pose& X_st
         slid.way.push_back(X_to);
         between = shorten(room, slid.way, kLeast);
     }
-    std::vector<Pose> path = shorten(room, from_start, kLeast);
+    std::vector<Pose> path = from_start;
     path.insert(path.end(), between->begin() + 1, between->end());
-    const std::vector<Pose> in = shorten(room, from_goal, kLeast);
-    path.insert(path.end(), in.rbegin() + 1, in.rend());
-    return path;
+    path.insert(path.end(), from_goal.rbegin() + 1, from_goal.rend());
+    return shorten(room, path, kLeast);
 }
 
 }  // namespace passung::path
