@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -65,7 +66,11 @@ std::vector<GeometryGroup> groupsOf(const plan::StudyPlan& plan) {
 }
 
 void printHead(const GeometryGroup& group) {
-    fmt::print("\nconditions {}\n", printable(fmt::format("{}", fmt::join(group.conditions, ", "))));
+    constexpr std::size_t kNamed = 4;
+    const auto named = std::span(group.conditions).first(std::min(kNamed, group.conditions.size()));
+    const std::size_t more = group.conditions.size() - named.size();
+    fmt::print("\nconditions {}{}\n", printable(fmt::format("{}", fmt::join(named, ", "))),
+               more > 0 ? fmt::format(" and {} more", more) : "");
     fmt::print("  {:<16}{:<7}{:>10}{:>10}{:>14}{:>9}  {}\n", "step", "path", "length mm", "turn deg", "clearance um",
                "seconds", "nearest");
 }

@@ -3,10 +3,13 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "analysis/truth/mesh_oracle.h"
 #include "core/shape/shape.h"
+#include "study/feasible/path_problems.h"
+#include "study/run/files/protocol_files.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/ui/cli/program.h"
 
@@ -52,13 +55,13 @@ protected:
 
 /// Poses of the path at which FCL finds the surfaces crossing; `judged` counts all.
 int crossings(const shape::Shape& moving, const std::vector<Pose>& path, const std::vector<Placed>& standing,
-              int& judged) {
-    const auto mesh = shape::tessellate(moving, kChord);
+              int& judged, double chord = kChord) {
+    const auto mesh = shape::tessellate(moving, chord);
     double reach = 0.0;
     for (const Vec3& v : mesh.vertices) reach = std::max(reach, v.norm());
     int crossed = 0;
     for (const Placed& other : standing) {
-        const truth::MeshOracle oracle(shape::tessellate(other.shape, kChord), mesh);
+        const truth::MeshOracle oracle(shape::tessellate(other.shape, chord), mesh);
         for (std::size_t i = 1; i < path.size(); ++i) {
             const Pose &a = path[i - 1], &b = path[i];
             const double way = (b.p - a.p).norm() + reach * a.q.angularDistance(b.q);
@@ -118,6 +121,27 @@ TEST_F(Feasible, AKeyIsTurnedIntoItsKeyway) {
     const shape::Shape pin = shape::KeyedPeg{0.010, 0.040, 0.003, 0.0015, 0.0005},
                        base = shape::KeyedBorePlate{0.080, 0.060, 0.020, 0.0102, 0.0032, 0.0016, 0.015, 0.0005};
     EXPECT_EQ(crossings(pin, paths()["pin"], {{base, {}}}, judged), 0);
+}
+
+TEST_F(Feasible, PathsOfTheShippedGearboxCrossNothing) {
+    // Truth: independent program: FCL as above, on triangles within 5 µm, which is a twentieth of the least clearance.
+    const std::string study = PASSUNG_SOURCE_DIR "/protocols/gearbox_assembly/study.toml";
+    const Ended ended = search(study);
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    const auto plan = run::readProtocol(study);
+    ASSERT_TRUE(plan);
+    const scene::SceneSpec& scene = plan->conditions.front().scene;
+    const auto shapeOf = [&](std::size_t part) { return std::get<shape::Shape>(scene.parts[part].geometry); };
+    auto found = paths();
+    int judged = 0;
+    for (const feasible::PathProblem& problem : feasible::problemsOf(plan->conditions.front())) {
+        std::vector<Placed> standing;
+        for (const feasible::StandingPart& other : problem.standing)
+            standing.push_back({shapeOf(other.part), other.X_WP});
+        EXPECT_EQ(crossings(shapeOf(problem.part), found[problem.name], standing, judged, 5e-6), 0) << problem.name;
+    }
+    std::printf("FCL judged %d poses of the gearbox's paths\n", judged);
+    EXPECT_GT(judged, 50000);
 }
 
 TEST_F(Feasible, ABoreThatIsTooSmallIsRefusedWithTheOverlapAsProof) {
