@@ -8,7 +8,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/../cmake/tick_rooms.cmake)
 # Each room and the rooms it may include besides itself. Arrows point only upward.
 set(model_rooms "core/geometry core/import core/shape core/field core/shell core/scene")
 set(contact_rooms "core/base ${model_rooms} core/contact core/motion core/closed_form core/surface")
-set(core_rooms "${contact_rooms} core/tick core/query core/loop core/replay")
+set(core_rooms "${contact_rooms} core/path core/tick core/query core/loop core/replay")
 set(plan_rooms "study/plan study/design study/questionnaire study/measures")
 set(row_rooms "core/base ${plan_rooms} study/session")
 set(study_rooms "${plan_rooms} study/protocol study/person")
@@ -25,6 +25,7 @@ set(rooms
   "core/motion         | core/base ${model_rooms} core/contact"
   "core/closed_form    | core/base core/geometry core/import core/shape core/field core/motion"
   "core/surface        | core/base ${model_rooms} core/contact core/motion"
+  "core/path           | ${contact_rooms}"
   "core/tick           | ${contact_rooms}"
   "core/query          | ${contact_rooms}"
   "core/loop           | ${contact_rooms} core/tick"
@@ -47,6 +48,7 @@ set(rooms
   "analysis/truth      | ${contact_rooms} core/tick core/query"
   "analysis/export     | core/base ${plan_rooms} study/protocol study/store"
   "analysis/stats      | core/base"
+  "study/feasible      | ${contact_rooms} core/path ${plan_rooms} analysis/truth"
   "study/run           | ${core_rooms} devices ${study_rooms} study/session study/store analysis/truth"
   "analysis/power      | core/base ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
   "ui/presenter        | core/base ${model_rooms} core/loop ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
@@ -74,6 +76,7 @@ set(libraries
   "Boost.Math | ^boost/math/                     | analysis/stats tests                   | cpp"
   "spdlog   | ^spdlog/                         | study/run tests                        | cpp"
   "CLI11    | ^CLI/                            | ui/cli tests                           | cpp"
+  "OMPL     | ^ompl/                           | core/path                              | cpp"
   "ODE      | ^ode/                            | tests                                  | cpp"
   "Bullet   | ^(btBullet|Bullet)               | tests                                  | cpp"
   "OpenVDB  | ^openvdb/                        | tests                                  | cpp"

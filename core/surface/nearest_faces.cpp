@@ -37,9 +37,9 @@ struct Search {
 
 }  // namespace
 
-NearestHulls nearestFaces(const ClusterTree& held, const ClusterTree& obstacles, const Pose& X) {
+NearestHulls nearestFaces(const ClusterTree& held, const ClusterTree& obstacles, const Pose& X, double within) {
     Search search{held, obstacles, Placement(X), {}};
-    search.best.distance = 1e300;
+    search.best.distance = within;
     search.visit(0, 0);
     return search.best;
 }

@@ -391,6 +391,8 @@ private:
                         "text that the rows' group and method contain: hard, forces, pieces, a mesh, an engine");
         sub->add_flag("--check", bench_.check, "compare with the marks; exit 1 if one is missed or not measured");
 
+        addFeasibleCommand();
+
         sub = command("doctor", "show devices and permissions, and check the loop", doctor_, doctor);
         sub->add_option("--seconds", doctor_.seconds, "length of the loop check")
             ->check(between(0.1, 3600.0, "a number from 0.1 to 3600"));
@@ -406,6 +408,22 @@ private:
                       "find the stiffest wall that the device bears while nobody holds it, and keep it as this user's "
                       "calibration: a stiffness \"max\" then stands for it")
             ->needs(device);
+    }
+
+    void addFeasibleCommand() {
+        auto* sub = command("feasible",
+                            "search a collision-free path for each step of an assembly or a peg_in_hole, with its "
+                            "least clearance; exit 1 if one has none",
+                            feasible_, feasible);
+        sub->add_option("PROTOCOL", feasible_.protocol, "study file (.toml)")->required();
+        addImport(sub, feasible_.import_limits);
+        sub->add_option("--out", feasible_.out,
+                        "folder for the paths: paths_N.csv of each distinct geometry, with a row for each waypoint, "
+                        "and geometries.csv, which says whose it is");
+        sub->add_option("--seed", feasible_.seed, "of the searches, from 1; default 1")
+            ->check(between(1, 4294967295.0, "a whole number from 1 to 4294967295"));
+        sub->add_option("--seconds", feasible_.seconds, "most time to search a step's path; default 30")
+            ->check(between(0.1, 86400.0, "a number from 0.1 to 86400"));
     }
 
     void addAccuracyCommand(const CLI::Validator& units) {
@@ -543,6 +561,7 @@ private:
     SimulateArguments simulate_;
     AccuracyArguments accuracy_;
     BenchArguments bench_;
+    FeasibleArguments feasible_;
     DoctorArguments doctor_;
 };
 

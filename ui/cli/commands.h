@@ -215,6 +215,16 @@ struct BenchArguments {
 /// Becomes the program passung-bench; returns only if there is none.
 int bench(const BenchArguments& options);
 
+struct FeasibleArguments {
+    std::string protocol;
+    std::string out;         // folder; empty: none
+    std::uint32_t seed = 1;  // > 0
+    double seconds = 30.0;   // of each step's search, > 0
+    run::ImportLimits import_limits;
+};
+/// Becomes the program passung-feasible; returns only if there is none.
+int feasible(const FeasibleArguments& options);
+
 struct DoctorArguments {
     double seconds = 10.0;
     std::string device;                  // preset; empty: all, with a check of the loop

@@ -1,0 +1,180 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "analysis/truth/mesh_oracle.h"
+#include "core/shape/shape.h"
+#include "study/feasible/path_problems.h"
+#include "study/run/files/protocol_files.h"
+#include "tests/analysis/export/csv_reader.h"
+#include "tests/ui/cli/program.h"
+
+// `passung feasible` as people use it, and its paths by an independent program.
+
+namespace passung::test {
+namespace {
+
+constexpr const char* kData = PASSUNG_SOURCE_DIR "/tests/data/feasible/";
+constexpr double kDense = 1e-4;  // between poses that FCL judges no point goes farther [m]
+constexpr double kChord = 1e-6;  // of the triangles that it judges [m]
+
+std::string pageStudy() {
+    const std::string page = readText(PASSUNG_SOURCE_DIR "/protocols/ASSEMBLY.md"), fence = "```toml\n";
+    const std::size_t begin = page.find(fence) + fence.size();
+    return page.substr(begin, page.find("```", begin) - begin);
+}
+
+struct Placed {
+    shape::Shape shape;
+    Pose X;
+};
+
+class Feasible : public testing::Test {
+protected:
+    Ended search(const std::string& protocol, const std::string& seconds = "20") const {
+        return runProgram(folder_.path(), {"feasible", protocol, "--seconds", seconds, "--out", "out"});
+    }
+    /// Waypoints of each part's step, in the order of the file.
+    std::map<std::string, std::vector<Pose>> paths() const {
+        const fake::CsvFile file = fake::readCsv(readText(folder_ / "out/paths_1.csv"));
+        std::map<std::string, std::vector<Pose>> paths;
+        for (std::size_t i = 0; i < file.rows.size(); ++i) {
+            const auto number = [&](const char* name) { return std::stod(file.at(i, name)); };
+            paths[file.at(i, "step")].push_back({Quat(number("qw"), number("qx"), number("qy"), number("qz")),
+                                                 Vec3(number("x_m"), number("y_m"), number("z_m"))});
+        }
+        return paths;
+    }
+
+    TempFolder folder_;
+};
+
+/// Poses of the path at which FCL finds the surfaces crossing; `judged` counts all.
+int crossings(const shape::Shape& moving, const std::vector<Pose>& path, const std::vector<Placed>& standing,
+              int& judged, double chord = kChord) {
+    const auto mesh = shape::tessellate(moving, chord);
+    double reach = 0.0;
+    for (const Vec3& v : mesh.vertices) reach = std::max(reach, v.norm());
+    int crossed = 0;
+    for (const Placed& other : standing) {
+        const truth::MeshOracle oracle(shape::tessellate(other.shape, chord), mesh);
+        for (std::size_t i = 1; i < path.size(); ++i) {
+            const Pose &a = path[i - 1], &b = path[i];
+            const double way = (b.p - a.p).norm() + reach * a.q.angularDistance(b.q);
+            const int steps = std::max(1, static_cast<int>(std::ceil(way / kDense)));
+            for (int step = 0; step <= steps; ++step) {
+                const double share = static_cast<double>(step) / steps;
+                const Pose X{a.q.slerp(share, b.q), a.p + share * (b.p - a.p)};
+                const auto meets = oracle.surfacesIntersect(other.X.inverse() * X);
+                ++judged;
+                crossed += !meets || *meets;
+            }
+        }
+    }
+    return crossed;
+}
+
+Pose at(double x, double y, double z) { return {Quat::Identity(), 1e-3 * Vec3(x, y, z)}; }
+
+const shape::Shape kPin = shape::Peg{0.010, 0.040, 0.0005};
+const shape::Shape kBlock = shape::Box{0.020, 0.020, 0.010}, kLid = shape::Box{0.030, 0.010, 0.008};
+shape::Shape baseWith(double bore) { return shape::BorePlate{0.080, 0.060, 0.020, bore, 0.015, 0.0005}; }
+
+TEST_F(Feasible, PathsOfThePagesStudyCrossNothing) {
+    // Truth: independent program: FCL (collide) on triangles within 1 µm, at poses 0.1 mm apart; goals from the page.
+    writeText(folder_ / "study.toml", pageStudy());
+    const Ended ended = search("study.toml");
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    auto found = paths();
+    const Placed base{baseWith(0.0104), {}};
+    int judged = 0, crossed = 0;
+    crossed += crossings(kPin, found["pin"], {base, {kBlock, at(-60, 30, 10)}, {kLid, at(-60, -30, 10)}}, judged);
+    crossed += crossings(kBlock, found["block"], {base, {kPin, at(0, 0, -14.5)}, {kLid, at(-60, -30, 10)}}, judged);
+    crossed += crossings(kLid, found["lid"], {base, {kPin, at(0, 0, -14.5)}, {kBlock, at(-25, 15, 5.5)}}, judged);
+    EXPECT_EQ(crossed, 0);
+    std::printf("FCL judged %d poses of paths: %d cross\n", judged, crossed);
+    EXPECT_GT(judged, 3000);
+    EXPECT_NEAR((found["pin"].back().p - Vec3(0, 0, -0.0145)).norm(), 0.0, 1e-12);
+    EXPECT_NEAR((found["pin"].front().p - Vec3(0.060, 0.040, 0)).norm(), 0.0, 1e-12);
+    // Closed form: the bore leaves 0.2 mm all round, and no path can have more at its goal.
+    EXPECT_NE(ended.out.find("200.0"), std::string::npos) << ended.out;
+}
+
+TEST_F(Feasible, APathFromAGoalThatLeansCrossesNothing) {
+    // Truth: as above; the pin has 50 µm of play all round and starts its way out beside the axis and askew.
+    const Ended ended = search(std::string(kData) + "leaning.toml");
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    int judged = 0;
+    EXPECT_EQ(crossings(kPin, paths()["pin"], {{baseWith(0.0101), {}}}, judged), 0);
+    EXPECT_GT(judged, 500);
+}
+
+TEST_F(Feasible, AKeyIsTurnedIntoItsKeyway) {
+    // Truth: as above. The pin starts 120 degrees off.
+    const Ended ended = search(std::string(kData) + "keyed.toml");
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    int judged = 0;
+    const shape::Shape pin = shape::KeyedPeg{0.010, 0.040, 0.003, 0.0015, 0.0005},
+                       base = shape::KeyedBorePlate{0.080, 0.060, 0.020, 0.0102, 0.0032, 0.0016, 0.015, 0.0005};
+    EXPECT_EQ(crossings(pin, paths()["pin"], {{base, {}}}, judged), 0);
+}
+
+TEST_F(Feasible, PathsOfTheShippedGearboxCrossNothing) {
+    // Truth: independent program: FCL as above, on triangles within 5 µm, which is a twentieth of the least clearance.
+    const std::string study = PASSUNG_SOURCE_DIR "/protocols/gearbox_assembly/study.toml";
+    const Ended ended = search(study);
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    const auto plan = run::readProtocol(study);
+    ASSERT_TRUE(plan);
+    const scene::SceneSpec& scene = plan->conditions.front().scene;
+    const auto shapeOf = [&](std::size_t part) { return std::get<shape::Shape>(scene.parts[part].geometry); };
+    auto found = paths();
+    int judged = 0;
+    for (const feasible::PathProblem& problem : feasible::problemsOf(plan->conditions.front())) {
+        std::vector<Placed> standing;
+        for (const feasible::StandingPart& other : problem.standing)
+            standing.push_back({shapeOf(other.part), other.X_WP});
+        EXPECT_EQ(crossings(shapeOf(problem.part), found[problem.name], standing, judged, 5e-6), 0) << problem.name;
+    }
+    std::printf("FCL judged %d poses of the gearbox's paths\n", judged);
+    EXPECT_GT(judged, 50000);
+}
+
+TEST_F(Feasible, ABoreThatIsTooSmallIsRefusedWithTheOverlapAsProof) {
+    // Truth: closed form: half of 10 mm less half of 9.9 mm are 50 µm.
+    const Ended ended = search(std::string(kData) + "hole_too_small.toml");
+    EXPECT_EQ(ended.exit_code, 1);
+    EXPECT_NE(ended.err.find("step pin"), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("the goal itself overlaps base by 50 µm (proof)"), std::string::npos) << ended.err;
+    EXPECT_EQ(linesOf(ended.err).size(), 1u) << ended.err;
+}
+
+TEST_F(Feasible, AKeyThatIsTurnedByNinetyDegreesIsRefused) {
+    // Truth: closed form: the key's corners are 6.5 mm from the axis, the bore's wall is at 5.1 mm.
+    const Ended ended = search(std::string(kData) + "key_turned.toml");
+    EXPECT_EQ(ended.exit_code, 1);
+    EXPECT_NE(ended.err.find("step pin"), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("(proof)"), std::string::npos) << ended.err;
+}
+
+TEST_F(Feasible, APartInAClosedBoxIsToldWithoutProof) {
+    // Truth: topology: walls all round, without a gap.
+    const Ended ended = search(std::string(kData) + "caught.toml", "3");
+    EXPECT_EQ(ended.exit_code, 1);
+    EXPECT_NE(ended.err.find("step lid"), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("no path found within 3 s (no proof)"), std::string::npos) << ended.err;
+}
+
+TEST_F(Feasible, ATaskWithoutAGoalBetweenPartsHasNothingToSearch) {
+    // Truth: the shipped study's type is narrow_passage.
+    const Ended ended = search(PASSUNG_SOURCE_DIR "/protocols/narrow_passage/study.toml");
+    EXPECT_EQ(ended.exit_code, 0) << ended.err;
+    EXPECT_NE(ended.out.find("there is nothing to search"), std::string::npos) << ended.out;
+}
+
+}  // namespace
+}  // namespace passung::test
