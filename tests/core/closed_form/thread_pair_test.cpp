@@ -208,14 +208,14 @@ TEST_P(ThreadPaths, OverlapNowhereCatchNowhereAndHoldTheLeastEnergy) {
     // Truth: dense points of both surfaces against the other's profile (thread_reference.h), at every twentieth tick
     // and for one play of each size in turn (PASSUNG_LONG=1: every fourth, and all), on its way and between; what dense
     // places of the crests' edges can push holds what is felt. No step beyond the hand's.
-    const bool all = std::getenv("PASSUNG_LONG") != nullptr;
-    const int every = all ? 4 : 20;
+    const bool long_run = std::getenv("PASSUNG_LONG") != nullptr;
+    const int every = long_run ? 4 : 20;
     std::vector<double> all;
     for (std::size_t i = 0; i < kSizes.size(); ++i) {
         constexpr std::array kShares{1e-3, 4e-3, 12e-3};  // of the diameter: 8, 32, 96 µm of an M8
         for (const double share : kShares) {
             const Size& size = kSizes[i];
-            if (!all && share != kShares[i % kShares.size()]) continue;
+            if (!long_run && share != kShares[i % kShares.size()]) continue;
             const double play = share * size.diameter;
             std::vector<double> spent;
             double deepest = 0.0, unheld = 0.0, beyond = 0.0;
