@@ -150,8 +150,18 @@ bool isCommand(const std::string& word, const std::vector<std::string>& commands
     const std::vector<std::string_view> names(commands.begin(), commands.end());
     if (std::find(names.begin(), names.end(), word) != names.end()) return true;
     const auto close = protocol::closestWord(word, names);
-    fmt::print(stderr, "error: unknown command \"{}\"{}\ncommands: {}\n", word,
-               close ? fmt::format("; did you mean \"{}\"?", *close) : "", fmt::join(names, ", "));
+    std::string list = "commands:";
+    std::size_t begin = 0;  // of its last line
+    for (const std::string_view name : names) {
+        constexpr std::size_t kLongest = 100;
+        if (list.size() - begin + name.size() > kLongest) {
+            begin = list.size() + 1;
+            list += "\n         ";
+        }
+        list.append(" ").append(name).append(name == names.back() ? "" : ",");
+    }
+    fmt::print(stderr, "error: unknown command \"{}\"{}\n{}\n", word,
+               close ? fmt::format("; did you mean \"{}\"?", *close) : "", list);
     return false;
 }
 
