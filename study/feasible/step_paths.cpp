@@ -72,6 +72,7 @@ Result<StepPath> pathOf(const scene::SceneSpec& scene, const PathProblem& proble
             answer.found = true;
             answer.poses = *std::move(found);
             answer.measures = path::measure(room, answer.poses);
+            if (closed_form) answer.measures.proven = 0.0;  // a minimum between samples may not have been seen
             if (const auto at = answer.measures.least.standing)
                 answer.nearest = scene.parts[problem.standing[*at].part].name;
         } else {

@@ -21,7 +21,7 @@ struct StepPath {
     std::string why;                // none was found, in words
     bool is_proof = false;          // there is none: an end overlaps
     std::vector<Pose> poses;        // from start to goal, straight between them
-    path::PathMeasures measures{};  // of it
+    path::PathMeasures measures{};  // of it; nothing is proven of closed forms
     std::string nearest;            // part that it comes nearest to
     double seconds = 0.0;
 };
