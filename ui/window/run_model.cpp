@@ -1,5 +1,6 @@
 #include "ui/window/run_model.h"
 
+#include "ui/presenter/step_view.h"
 #include "ui/window/words.h"
 
 namespace passung::window {
