@@ -234,13 +234,13 @@ INSTANTIATE_TEST_SUITE_P(AssembleHand, Assemblers,
                          [](const auto& of) { return std::string(of.param.name); });
 
 TEST_P(Assemblers, FinishAllStepsWithinTwoMinutes) {
-    // Truth: isThere(), of the poses that parts are left at.
+    // Truth: isThere(), of the poses that parts are left at. PASSUNG_LONG=1: 20 seeds, else 6.
     const Way& way = GetParam();
-    constexpr int kTrials = 20;
+    const int trials = std::getenv("PASSUNG_LONG") != nullptr ? 20 : 6;
     int finished = 0;
     std::vector<double> times;
-    for (std::uint64_t seed = 1; seed <= kTrials; ++seed) {
-        const Outcome outcome = run({.seed = seed,
+    for (int seed = 1; seed <= trials; ++seed) {
+        const Outcome outcome = run({.seed = static_cast<std::uint64_t>(seed),
                                      .hands = way.hands,
                                      .on_press = way.on_press,
                                      .device = way.device,
@@ -248,13 +248,13 @@ TEST_P(Assemblers, FinishAllStepsWithinTwoMinutes) {
                                      .scale = way.scale,
                                      .turn = way.turn});
         finished += outcome.finished ? 1 : 0;
-        if (!outcome.finished) std::printf("seed %d told %d\n", static_cast<int>(seed), static_cast<int>(outcome.told));
+        if (!outcome.finished) std::printf("seed %d told %d\n", seed, static_cast<int>(outcome.told));
         times.push_back(outcome.time);
     }
     std::ranges::sort(times);
-    std::printf("%s: %d of %d, median %.1f s, longest %.1f s\n", way.name, finished, kTrials, times[kTrials / 2],
+    std::printf("%s: %d of %d, median %.1f s, longest %.1f s\n", way.name, finished, trials, times[times.size() / 2],
                 times.back());
-    EXPECT_GE(finished, kTrials - 1);
+    EXPECT_GE(finished, trials - 1);
 }
 
 TEST(AssembleHand, SameSeedMovesTheSameBitForBitAndAnotherOneElse) {
@@ -267,18 +267,20 @@ TEST(AssembleHand, SameSeedMovesTheSameBitForBitAndAnotherOneElse) {
 
 TEST(AssembleHand, NobodyPushesOnTheGroundOfAShortBoreUntilTheEnd) {
     // Truth: isThere(). Bores of 5 mm: who looked at the mouth 1 mm too high believes the peg not to be in.
+    // PASSUNG_LONG=1: 40 seeds, else 16.
+    const int trials = std::getenv("PASSUNG_LONG") != nullptr ? 40 : 16;
     int finished = 0;
-    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-        const Outcome outcome = run({.seed = seed, .bore = 5e-3, .depth = 5e-3});
+    for (int seed = 1; seed <= trials; ++seed) {
+        const Outcome outcome = run({.seed = static_cast<std::uint64_t>(seed), .bore = 5e-3, .depth = 5e-3});
         finished += outcome.finished ? 1 : 0;
-        if (!outcome.finished) std::printf("seed %d told %d\n", static_cast<int>(seed), static_cast<int>(outcome.told));
+        if (!outcome.finished) std::printf("seed %d told %d\n", seed, static_cast<int>(outcome.told));
     }
-    EXPECT_EQ(finished, 40);
+    EXPECT_EQ(finished, trials);
 }
 
 TEST(AssembleHand, NobodyFinishesWithoutABore) {
     // Truth: there is no hole.
-    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
         const Outcome outcome = run({.seed = seed, .bores = false});
         EXPECT_FALSE(outcome.finished);
         EXPECT_EQ(outcome.told & 1u, 0u);
