@@ -5,12 +5,14 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <numbers>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "analysis/export/table.h"
 #include "core/base/printable.h"
 #include "study/feasible/step_paths.h"
 #include "study/run/files/builds.h"
@@ -96,32 +98,45 @@ void printPath(const feasible::StepPath& path) {
                1e3 * of.length, kDegrees * of.turn, 1e6 * of.least.distance, path.seconds, where, proven);
 }
 
-std::string csvOf(const GeometryGroup& group) {
-    std::string text = "step,waypoint,x_m,y_m,z_m,qw,qx,qy,qz,clearance_m\n";
+exporter::Table tableOf(std::initializer_list<const char*> columns) {
+    exporter::Table table;
+    for (const char* name : columns) table.columns.push_back({name, "", "", "", "", 1, {}});
+    return table;
+}
+
+exporter::Table waypointsOf(const GeometryGroup& group) {
+    exporter::Table table = tableOf({"step", "waypoint", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "clearance_m"});
     for (const feasible::StepPath& path : group.paths) {
         for (std::size_t i = 0; i < path.poses.size(); ++i) {
             const Pose& X = path.poses[i];
-            text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", path.name, i + 1, X.p.x(), X.p.y(), X.p.z(), X.q.w(),
-                                X.q.x(), X.q.y(), X.q.z(), path.measures.at_waypoints[i]);
+            std::vector<std::string> row{path.name, exporter::cell(static_cast<std::int64_t>(i + 1))};
+            for (const double value :
+                 {X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z(), path.measures.at_waypoints[i]})
+                row.push_back(exporter::cell(value));
+            table.rows.push_back(std::move(row));
         }
     }
-    return text;
+    return table;
+}
+
+Result<Done> writeTable(const std::string& path, const exporter::Table& table) {
+    cli::OutputFile file(path);
+    file.write(exporter::toCsv(table));
+    return file.commit();
 }
 
 Result<Done> write(const std::string& folder, const std::vector<GeometryGroup>& groups) {
     std::error_code problem;
     std::filesystem::create_directories(folder, problem);
     if (problem) return Error{.message = problem.message(), .file = folder};
-    std::string key = "geometry,condition\n";
+    exporter::Table key = tableOf({"geometry", "condition"});
     for (std::size_t i = 0; i < groups.size(); ++i) {
-        cli::OutputFile file(fmt::format("{}/paths_{}.csv", folder, i + 1));
-        file.write(csvOf(groups[i]));
-        if (auto done = file.commit(); !done) return done;
-        for (const std::string& name : groups[i].conditions) key += fmt::format("{},\"{}\"\n", i + 1, name);
+        const std::string path = fmt::format("{}/paths_{}.csv", folder, i + 1);
+        if (auto done = writeTable(path, waypointsOf(groups[i])); !done) return done;
+        for (const std::string& name : groups[i].conditions)
+            key.rows.push_back({exporter::cell(static_cast<std::int64_t>(i + 1)), name});
     }
-    cli::OutputFile file(folder + "/geometries.csv");
-    file.write(key);
-    return file.commit();
+    return writeTable(folder + "/geometries.csv", key);
 }
 
 /// Steps without a path, a line each.
