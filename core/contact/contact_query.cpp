@@ -297,32 +297,33 @@ struct Traversal {
     /// Of places in the batch, all of one leaf, in each octant of the normal the nearest that is a contact: the nearest
     /// first.
     void takeNearestOf(std::span<const std::uint32_t> leaf) noexcept {
-        constexpr std::uint32_t kNone = kBatch;
+        constexpr std::uint32_t kNoPlace = kBatch;
         const auto comesBefore = [&](std::uint32_t a, std::uint32_t b) {
             return batch.read[a] < batch.read[b] || (batch.read[a] == batch.read[b] && a < b);
         };
         std::array<std::uint8_t, kBatch> octant;
         std::array<std::uint32_t, 8> next;  // of each octant
-        next.fill(kNone);
+        next.fill(kNoPlace);
         for (const std::uint32_t i : leaf) {
             const Eigen::Vector3f& n = shell.facings()[batch.index[i]].normal;
             octant[i] =
                 static_cast<std::uint8_t>((n.x() < 0.0f ? 1 : 0) | (n.y() < 0.0f ? 2 : 0) | (n.z() < 0.0f ? 4 : 0));
             std::uint32_t& first = next[octant[i]];
-            if (first == kNone || comesBefore(i, first)) first = i;
+            if (first == kNoPlace || comesBefore(i, first)) first = i;
         }
         for (;;) {
-            std::uint32_t i = kNone;
+            std::uint32_t i = kNoPlace;
             for (const std::uint32_t other : next)
-                if (other != kNone && (i == kNone || comesBefore(other, i))) i = other;
-            if (i == kNone) return;
+                if (other != kNoPlace && (i == kNoPlace || comesBefore(other, i))) i = other;
+            if (i == kNoPlace) return;
             const ShellSample sample = sampleAt(i);
             const Vec3 p_F = place.inField(sample.position);
             std::uint32_t& then = next[octant[i]];
-            then = kNone;
+            then = kNoPlace;
             if (finds.take(p_F, sample, field.sample(p_F, request.mode))) continue;
             for (const std::uint32_t other : leaf)
-                if (octant[other] == octant[i] && comesBefore(i, other) && (then == kNone || comesBefore(other, then)))
+                if (octant[other] == octant[i] && comesBefore(i, other) &&
+                    (then == kNoPlace || comesBefore(other, then)))
                     then = other;
         }
     }

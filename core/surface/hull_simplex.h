@@ -35,13 +35,16 @@ struct Simplex {
     enum class Reduced { Nearer, Stalled, Inside };
 
     PASSUNG_INLINE bool has(const CornerPair& pair) const noexcept {
-        bool found = false;
+        int found = 0;
         for (int i = 0; i < 3; ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            found |= (i < count) & (of[k].held == pair.held) & (of[k].obstacle == pair.obstacle) &
-                     (of[k].second == pair.second);
+            const CornerPair& known = of[static_cast<std::size_t>(i)];
+            const int counts = i < count;
+            const int same_held = known.held == pair.held;
+            const int same_obstacle = known.obstacle == pair.obstacle;
+            const int same_second = known.second == pair.second;
+            found |= counts & same_held & same_obstacle & same_second;
         }
-        return found;
+        return found != 0;
     }
 
     PASSUNG_INLINE Reduced add(const Vec3& a, const CornerPair& pair) noexcept;

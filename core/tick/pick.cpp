@@ -82,7 +82,9 @@ void placePart(const HandModel& model, const std::vector<Pose>& X_WP, HandState&
     hand.tried = 0;
     hand.step.look.open = false;
     hand.step.X_WT_followed = X;
-    static_cast<ProxyMotion&>(hand) = {};
+    hand.rubbing = {};
+    hand.held.count = 0;
+    hand.last_motion = 0.0;
     static_cast<ProxyFilter&>(hand) = {};
     static_cast<ToolMotion&>(hand) = {};
     static_cast<ClosedFormHold&>(hand) = {};

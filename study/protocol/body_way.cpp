@@ -98,8 +98,8 @@ public:
         edge_ = (box.size().maxCoeff() + 2.0 * std::max(needed, 0.0)) / (kMostCells - 4);
         const double margin = std::max(needed, 0.0) + 2.0 * edge_;  // a way around everything
         low_ = box.low - Vec3::Constant(margin);
-        for (int axis = 0; axis < 3; ++axis)
-            cells_[axis] = 1 + static_cast<int>((box.size()[axis] + 2.0 * margin) / edge_);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            cells_[axis] = 1 + static_cast<int>((box.size()[static_cast<int>(axis)] + 2.0 * margin) / edge_);
         free_.assign(static_cast<std::size_t>(cells_[0]) * static_cast<std::size_t>(cells_[1]) *
                          static_cast<std::size_t>(cells_[2]),
                      kUnseen);
@@ -122,8 +122,9 @@ private:
 
     Cell cellOf(const Vec3& p) const {
         Cell cell{};
-        for (int axis = 0; axis < 3; ++axis)
-            cell[axis] = std::clamp(static_cast<int>(std::floor((p - low_)[axis] / edge_)), 0, cells_[axis] - 1);
+        const Vec3 at = (p - low_) / edge_;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            cell[axis] = std::clamp(static_cast<int>(std::floor(at[static_cast<int>(axis)])), 0, cells_[axis] - 1);
         return cell;
     }
     Vec3 middle(const Cell& c) const { return low_ + edge_ * Vec3(c[0] + 0.5, c[1] + 0.5, c[2] + 0.5); }

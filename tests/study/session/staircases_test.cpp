@@ -175,7 +175,7 @@ TEST_F(StaircasesTest, ATrialThatGivesItsTrackNoAnswerIsRepeatedUpToTheMaximum) 
     plan_.staircases[0].catch_trials = 0;
     trials_.resize(16);
     std::deque<Records> scripts(24, trialOf('1'));
-    for (const std::size_t i : {0, 1, 2, 18, 19}) scripts[i] = lost();
+    for (const std::size_t i : {0u, 1u, 2u, 18u, 19u}) scripts[i] = lost();
     apparatus_.scripts = scripts;
     Session session({plan::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, {});
     ASSERT_TRUE(session.run());
