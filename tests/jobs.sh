@@ -43,7 +43,7 @@ job() {
 every_job() {
     job 'g++, assertions, all tests, warnings are errors' env PASSUNG_PRESET=ci ./dev test
     job 'an edit in a kernel to its tests' edit_to_tests core/motion/constrained_motion.cpp core/motion
-    job 'demo study (./dev run), its build from nothing' env -u DISPLAY -u WAYLAND_DISPLAY ./dev run
+    job 'demo study (./dev run)' env -u DISPLAY -u WAYLAND_DISPLAY PASSUNG_PRESET=ci ./dev run
     job 'clang, ASan, UBSan: files, data, program' ./dev asan-check
     job 'fuzzers' ./dev fuzz-check "$1"
     job 'TSan: threads' ./dev tsan-check
