@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <set>
@@ -11,6 +10,7 @@
 #include "study/store/read/verify.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/study/store/damaged_study.h"
+#include "tests/support/length.h"
 
 namespace passung::exporter {
 namespace {
@@ -167,7 +167,7 @@ std::vector<std::string> withoutPlace(const fake::CsvFile& csv, std::vector<std:
 TEST_F(DamagedExport, EveryFlippedBitIsNoticedOrWithoutEffect) {
     // Truth: invariant: bits of a real file, wherever they lie; what verify does not notice changes no exported byte,
     // and no row of a table is exported that was not there before.
-    const int flips = std::getenv("PASSUNG_LONG") != nullptr ? 1000 : 150;
+    const int flips = test::atFullLength() ? 1000 : 150;
     Random random(17);
     int unnoticed = 0, whole_exports = 0;
     for (int flip = 0; flip < flips; ++flip) {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <functional>
 #include <numbers>
 #include <string>
@@ -13,6 +12,7 @@
 #include "core/closed_form/pose_solver.h"
 #include "core/closed_form/solid.h"
 #include "tests/core/closed_form/thread_reference.h"
+#include "tests/support/length.h"
 #include "tests/support/rt_guard.h"
 
 // A parametric bolt in a nut of the same pitch: nut's frame, forces are the spring's alone.
@@ -205,10 +205,11 @@ TEST(BoltInNut, PushedAsideRestsAtItsPlay) {
 class ThreadPaths : public testing::TestWithParam<bool> {};
 
 TEST_P(ThreadPaths, OverlapNowhereCatchNowhereAndHoldTheLeastEnergy) {
-    // Truth: dense points of both surfaces against the other's profile (thread_reference.h), at every twentieth tick
-    // and for one play of each size (PASSUNG_LONG=1: every fourth, and three of the first size), on its way and
-    // between; what dense places of the crests' edges can push holds what is felt. No step beyond the hand's.
-    const bool long_run = std::getenv("PASSUNG_LONG") != nullptr;
+    // Truth: dense points of both surfaces against the other's profile (thread_reference.h), on its way and between;
+    // what dense places of the crests' edges can push holds what is felt. No step beyond the hand's. Each size has one
+    // play and every third hand, looked at every twentieth tick (PASSUNG_LONG=1: the first size has three plays, each
+    // size every hand, looked at every fourth tick).
+    const bool long_run = test::atFullLength();
     const int every = long_run ? 4 : 20;
     std::vector<double> all;
     for (std::size_t i = 0; i < kSizes.size(); ++i) {
@@ -221,7 +222,9 @@ TEST_P(ThreadPaths, OverlapNowhereCatchNowhereAndHoldTheLeastEnergy) {
             std::vector<double> spent;
             double deepest = 0.0, unheld = 0.0, beyond = 0.0;
             int late = 0, catches = 0, ticks = 0;
+            std::size_t number = i;
             for (const Hand& hand : hands(i + 1)) {
+                if (!long_run && ++number % 3 != 0) continue;
                 SCOPED_TRACE(hand.name);
                 BoltInNut scene(size, play, GetParam());
                 const ThreadReference truth(scene.bolt, scene.nut, 6000, i);

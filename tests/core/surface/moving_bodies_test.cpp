@@ -19,6 +19,7 @@
 
 #include "core/base/random.h"
 #include "core/surface/surface_proxy.h"
+#include "tests/support/length.h"
 #include "tests/support/mesh_crossing.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/surface_cases.h"
@@ -302,8 +303,11 @@ constexpr std::array kMostSuspended{5, 5, 30, 30};  // of 900 ways of a tick, by
 
 class MovedInTurns : public testing::TestWithParam<PairOfParts> {};
 
+/// PASSUNG_LONG=1: every pair of parts at four speeds, else at two.
+std::uint64_t seeds() { return test::atFullLength() ? 4 : 2; }
+
 TEST_P(MovedInTurns, PartsInTwoHandsNeverMeet) {
-    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    for (std::uint64_t seed = 1; seed <= seeds(); ++seed) {
         const Seen seen = scene(GetParam(), seed, .5, 38000).run(500, 10);
         expectSafe(GetParam().name, seed, seen);
         EXPECT_GT(seen.of_other, 50) << "the hands press the parts against each other";
@@ -314,7 +318,7 @@ TEST_P(MovedInTurns, PartsInTwoHandsNeverMeet) {
 
 TEST_P(MovedInTurns, NeitherDoTheyOnTheWayThatBothGoAtOnce) {
     constexpr std::array kMost{10, 10, 100, 60};  // suspended, as above: what is proven besides is work too
-    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    for (std::uint64_t seed = 1; seed <= seeds(); ++seed) {
         const Seen seen = scene(GetParam(), seed, .5, 38000).atOnce().run(500, 10);
         expectSafe(GetParam().name, seed, seen);
         EXPECT_GT(seen.of_other, 50) << "the hands press the parts against each other";

@@ -5,6 +5,7 @@
 
 #include "devices/scripted/trajectory.h"
 #include "tests/core/tick/grain.h"
+#include "tests/support/length.h"
 
 // The force of god objects on closed forms along random smooth paths, against the pose of least energy
 // (analysis/truth/least_energy.h). PASSUNG_LONG=1: 1000 paths of 1.2 s, some 25 minutes of processor time.
@@ -14,7 +15,7 @@ namespace {
 
 using scene::ContactMethod;
 
-bool all() { return std::getenv("PASSUNG_LONG") != nullptr; }
+bool all() { return test::atFullLength(); }
 
 scripted::Trajectory pathOf(const std::string& name) {
     auto path = scripted::Trajectory::read(PASSUNG_SOURCE_DIR "/tests/data/closed_form/" + name + ".csv");

@@ -17,6 +17,7 @@
 #include "core/base/random.h"
 #include "core/tick/step.h"
 #include "core/tick/tick_state.h"
+#include "tests/support/length.h"
 #include "tests/support/mesh_crossing.h"
 #include "tests/support/off_file.h"
 #include "tests/support/scenes.h"
@@ -218,7 +219,7 @@ TEST_P(MovingWall, IsCrossedNeitherAtTicksNorBetween) {
     // Truth: triangle against triangle, see above. PASSUNG_LONG=1: 10 000 approaches at each speed.
     const auto& [pair, speed] = GetParam();
     const char* asked = std::getenv("PASSUNG_APPROACHES");
-    const int approaches = asked != nullptr ? std::atoi(asked) : std::getenv("PASSUNG_LONG") != nullptr ? 1667 : 5;
+    const int approaches = asked != nullptr ? std::atoi(asked) : test::atFullLength() ? 1667 : 5;
     const Seen seen = Approaches(pair, speed, 5).run(approaches);
     std::printf(
         "%s at %g m/s: %d approaches, %d ticks, %d touch, suspended %d (longest %d); crossings at ticks %d, between "

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "core/tick/step.h"
 #include "core/tick/tick_state.h"
 #include "tests/support/contact_way.h"
+#include "tests/support/length.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/scenes.h"
 
@@ -729,7 +729,7 @@ TEST_P(OfEachWay, TwoHandsHoldAHeavyPartBetweenTwoPlates) {
     pair.turn_stiffness = 5.0;
     Pose still;
     double most = 0.0, moved = 0.0;
-    const int ticks = std::getenv("PASSUNG_LONG") != nullptr || GetParam().geometry != Geometry::Field ? 60'000 : 6'000;
+    const int ticks = test::atFullLength() || GetParam().geometry != Geometry::Field ? 60'000 : 6'000;
     for (int i = 0; i < ticks; ++i) {
         pair.hands.tick();
         if (i == 0) still = pair.hands.partAt(1);

@@ -6,6 +6,7 @@
 
 #include "core/base/random.h"
 #include "tests/support/every_effect.h"
+#include "tests/support/length.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/scenes.h"
 
@@ -74,7 +75,7 @@ std::vector<std::pair<const char*, scene::SceneSpec>> everyKindOfScene() {
 TEST(Step, AllocatesLocksAndWritesNothing) {
     // Truth: invariant, counted by interposed malloc, mutex and write. The path is in the bore from 2 s on;
     // PASSUNG_LONG=1: of its 10 s all, else 3.
-    const int ticks = std::getenv("PASSUNG_LONG") != nullptr ? kTicks : 3000;
+    const int ticks = test::atFullLength() ? kTicks : 3000;
     if (!support::RtGuard::available()) GTEST_SKIP() << "the sanitizer owns the interposed functions";
     for (const auto& [name, spec] : everyKindOfScene()) {
         test::Bench bench(spec);

@@ -11,6 +11,7 @@
 #include "core/scene/scene.h"
 #include "devices/simulated/presets.h"
 #include "devices/simulated/simulated_device.h"
+#include "tests/support/length.h"
 #include "tests/support/rt_guard.h"
 
 // Simulated people who pick parts up and put them together, against the haptic cycle on a scene of its own.
@@ -236,7 +237,7 @@ INSTANTIATE_TEST_SUITE_P(AssembleHand, Assemblers,
 TEST_P(Assemblers, FinishAllStepsWithinTwoMinutes) {
     // Truth: isThere(), of the poses that parts are left at. PASSUNG_LONG=1: 20 seeds, else 6.
     const Way& way = GetParam();
-    const int trials = std::getenv("PASSUNG_LONG") != nullptr ? 20 : 6;
+    const int trials = test::atFullLength() ? 20 : 6;
     int finished = 0;
     std::vector<double> times;
     for (int seed = 1; seed <= trials; ++seed) {
@@ -268,7 +269,7 @@ TEST(AssembleHand, SameSeedMovesTheSameBitForBitAndAnotherOneElse) {
 TEST(AssembleHand, NobodyPushesOnTheGroundOfAShortBoreUntilTheEnd) {
     // Truth: isThere(). Bores of 5 mm: who looked at the mouth 1 mm too high believes the peg not to be in.
     // PASSUNG_LONG=1: 40 seeds, else 16.
-    const int trials = std::getenv("PASSUNG_LONG") != nullptr ? 40 : 16;
+    const int trials = test::atFullLength() ? 40 : 16;
     int finished = 0;
     for (int seed = 1; seed <= trials; ++seed) {
         const Outcome outcome = run({.seed = static_cast<std::uint64_t>(seed), .bore = 5e-3, .depth = 5e-3});

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <numeric>
 
@@ -12,6 +11,7 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/protocol/trial_types.h"
 #include "tests/study/protocol/known_names.h"
+#include "tests/support/length.h"
 
 namespace passung::protocol {
 namespace {
@@ -231,7 +231,7 @@ TEST(ShippedFiles, HiddenOffsetMovesOnlyTheTouchedPlate) {
 /// every line.
 template <class Change>
 void expectSafe(std::size_t first, Change change) {
-    const std::size_t every = std::getenv("PASSUNG_LONG") != nullptr ? 1 : 3;
+    const std::size_t every = test::atFullLength() ? 1 : 3;
     const auto plan = readShipped("peg_in_hole/study.toml");
     ASSERT_TRUE(plan);
     const std::string& text = plan->source_text;

@@ -1,13 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
 #include "study/run/run_study.h"
 #include "study/store/schema/sqlite.h"
 #include "tests/study/store/fake_study.h"
+#include "tests/support/length.h"
 #include "tests/ui/cli/small_study.h"
 
 // The data of a session of an hour, every channel of every tick at 1 kHz. PASSUNG_LONG=1: all of it; else a minute.
@@ -44,7 +44,7 @@ std::vector<TickRecord> realRecords(const std::string& path) {
 
 TEST(LongSession, AnHourOfEveryChannelFitsItsDatabaseAndLosesNoRecord) {
     // Truth: closed form (the mark of an hour, in proportion to what is written) for records of a simulated session
-    const std::int64_t seconds = std::getenv("PASSUNG_LONG") != nullptr ? kHour : 60;
+    const std::int64_t seconds = test::atFullLength() ? kHour : 60;
     const std::int64_t trials = seconds / kTrialSeconds;
     const fake::TempFolder folder;
     const std::string path = folder / "s.db";

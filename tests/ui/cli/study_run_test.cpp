@@ -14,6 +14,7 @@
 #include "study/store/samples/sample_codec.h"
 #include "study/store/schema/sqlite.h"
 #include "tests/analysis/export/csv_reader.h"
+#include "tests/support/length.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
 
@@ -103,10 +104,16 @@ void expectOutcomeInRecords(const store::AttemptRow& attempt, std::int64_t start
     }
 }
 
+/// Long studies, which assembly_test.cpp and accuracy_threshold_test.cpp run as well.
+bool hasATestOfItsOwn(const std::string& study) {
+    return study.starts_with("gearbox_assembly/") || study.starts_with("accuracy_threshold/");
+}
+
 class ShippedStudy : public testing::TestWithParam<std::string> {};
 
 TEST_P(ShippedStudy, RunsToItsDataFileAndEveryRowSaysWhatHappened) {
     // Truth: invariant (an outcome is what the events, the recorded ticks and the protocol's rules say)
+    if (!test::atFullLength() && hasATestOfItsOwn(GetParam())) GTEST_SKIP() << "but for PASSUNG_LONG=1";
     const TempFolder folder;
     const std::string file = std::string(PASSUNG_SOURCE_DIR) + "/protocols/" + GetParam();
     const auto plan = protocol::readProtocol(file, run::knownDevices(), run::knownMeasures());

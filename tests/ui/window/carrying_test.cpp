@@ -3,6 +3,7 @@
 
 #include "core/base/random.h"
 #include "core/shape/shape.h"
+#include "tests/support/length.h"
 #include "tests/ui/window/ray_caster.h"
 #include "tests/ui/window/windows.h"
 #include "ui/presenter/drawn_scene.h"
@@ -165,7 +166,7 @@ protected:
         EXPECT_GE(compared, 4) << name;
     }
 
-    static bool judged() { return std::getenv("PASSUNG_LONG") != nullptr; }  // else the machine does other things too
+    static bool judged() { return test::atFullLength(); }  // else the machine does other things too
 
     /// While one part after the other is lifted, each shown by a picture of its own.
     double picturesPerSecond() {

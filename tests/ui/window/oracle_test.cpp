@@ -17,6 +17,7 @@
 #include "study/run/files/known_names.h"
 #include "study/run/run_study.h"
 #include "study/store/read/store_reader.h"
+#include "tests/support/length.h"
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/four_trials.h"
 #include "tests/ui/window/ray_caster.h"
@@ -469,8 +470,8 @@ TEST(RayCaster, SeesASquareWhereGeometryHasIt) {
 TEST_F(Oracle, ScenesThatComeBackShowWhatTheirConditionSays) {
     // Truth: closed form: rays through the middles of pixels against the parts' triangles, with the recorded poses.
     // PASSUNG_LONG=1: all scenes of both studies, else some after each resumption.
-    const bool all = std::getenv("PASSUNG_LONG") != nullptr;
-    const int some = all ? 1 << 20 : 5;
+    const bool all = test::atFullLength();
+    const int some = all ? 1 << 20 : 3;
     resize(640, 400);
     const auto plan = planOf(comingBack(""), "coming_back.toml");
     show(plan, folder_ / "first.db", false, 14);
@@ -539,7 +540,7 @@ TEST_F(Oracle, TheConsolesLookAndLanguageChangeNothingOfTheParticipantsPicture) 
 
 TEST_F(Oracle, EveryTrialOfEveryShippedStudyShowsWhatItsConditionSays) {
     // Truth: closed form, as above. The first trials of one participant; PASSUNG_LONG=1: all of them.
-    const int scenes = std::getenv("PASSUNG_LONG") != nullptr ? 1 << 20 : 3;
+    const int scenes = test::atFullLength() ? 1 << 20 : 3;
     resize(640, 400);
     for (const auto& folder : std::filesystem::directory_iterator(PASSUNG_SOURCE_DIR "/protocols")) {
         const std::string path = folder.path() / "study.toml";

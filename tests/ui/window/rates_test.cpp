@@ -11,6 +11,7 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
 #include "study/store/read/store_reader.h"
+#include "tests/support/length.h"
 #include "tests/ui/window/windows.h"
 #include "ui/window/live_session.h"
 
@@ -89,7 +90,7 @@ protected:
         std::filesystem::create_directories(protocols_ + "/ring");
         triangles_ = writeRing(protocols_ + "/ring/ring.off");
         std::string study = kStudy;
-        study.replace(study.find("TIMEOUT"), 7, std::getenv("PASSUNG_LONG") != nullptr ? "6" : "2");
+        study.replace(study.find("TIMEOUT"), 7, test::atFullLength() ? "6" : "2");
         std::ofstream(protocols_ + "/ring/study.toml") << study;
         warnings.clear();
     }
