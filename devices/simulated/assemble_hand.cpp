@@ -149,7 +149,10 @@ void AssembleHand::chooseStep(const Percept& percept) noexcept {
         if (!mayBeDone(goal_.steps[i], i, percept)) continue;
         if (i != step_) tries_ = 0;
         step_ = i;
-        if (inHand(percept) >= 0) return setOut();
+        if (inHand(percept) >= 0) {
+            if (!goal_.on_press) buttons_ = goal_.close;  // what was in the hand from the start can be let go as well
+            return setOut();
+        }
         return reach(Stage::Over, {q_empty_, seenGrip() + kOver * Vec3::UnitZ()}, params_.approach_duration);
     }
 }

@@ -42,6 +42,9 @@ constexpr double kExtraDepth = 1e-3;       // [m] beyond the asked depth, to be 
 constexpr double kBottomShare = 0.88;      // of the asked depth: a stop there is taken for the end
 constexpr double kEndGain = 2.5;           // [1/s] slows down before the asked depth
 constexpr double kEndSpeed = 2e-3;         // [m/s]
+constexpr double kSeenTurned = 0.05;       // [rad] off a quarter of the mouth's: part and mouth look turned
+constexpr double kSearchTurn = 0.03;       // [rad] to and fro about the axis, for what has failed and is not round
+constexpr double kSearchTurnRate = 0.9;    // [1/s]
 constexpr double kGiveWay = 0.25;          // [s] time constant of yielding to the sides and in tilt
 constexpr double kSlideGain = 2.0;         // [1/s]; × delay of seeing < 1/2 keeps it stable
 constexpr double kSlideSpeed = 5e-3;       // [m/s]
@@ -78,6 +81,35 @@ void Hand::believe() noexcept {
     const Vec3 axis = X_WM_.q * Vec3::UnitZ();
     const Quat align = rotationBetween(task_.X_WHeldStart.q * Vec3::UnitZ(), axis);
     q_goal_ = (align * task_.X_WHeldStart.q).normalized();
+    if (fitting_turn_ != 0.0) q_goal_ = (rotationFromVector(fitting_turn_ * axis) * q_goal_).normalized();
+}
+
+/// By how much part and mouth are seen turned against each other, off the nearest quarter turn [rad].
+double Hand::seenTurned() const noexcept {
+    const Quat away = X_WTarget_.q.conjugate() * task_.X_WHeldStart.q;
+    return std::remainder(2.0 * std::atan2(away.z(), away.w()), 0.5 * std::numbers::pi);
+}
+
+bool Hand::looksTurned() const noexcept { return !task_.round && turns_ && std::abs(seenTurned()) > kSeenTurned; }
+
+// What failed as it came is tried as it looks to fit, then as it came again, and so on: first turned to the nearest
+// quarter turn of the mouth, after some failures to the others. The eye errs in that as in tilt; touch does the rest,
+// see searchTurn().
+void Hand::turnToFit() noexcept {
+    if (task_.round || !turns_) return;
+    constexpr std::array kQuarters{0, 0, 0, 1, -1, 2};
+    const auto next = static_cast<std::size_t>(turns_tried_++) % (2 * kQuarters.size());
+    const int quarters = kQuarters[next / 2];
+    const double off = seenTurned();
+    fitting_turn_ = 0.0;
+    if (next % 2 == 1 || (quarters == 0 && std::abs(off) < kSeenTurned)) return;
+    fitting_turn_ = 0.5 * std::numbers::pi * quarters - off + params_.tilt_error * perception_.normal();
+}
+
+/// To and fro about the axis, of what has failed and is not round.
+Vec3 Hand::searchTurn(double tau) const noexcept {
+    if (turns_tried_ == 0) return Vec3::Zero();
+    return kSearchTurn * std::sin(kSearchTurnRate * tau) * (X_WM_.q * Vec3::UnitZ());
 }
 
 double Hand::seenDepth(const Percept& percept) const noexcept {
@@ -217,7 +249,7 @@ void Hand::search(const Percept& percept) noexcept {
     p_MP_ += step.norm() > most ? Vec3(step * (most / step.norm())) : step;
     const double tau = 2.0 * std::numbers::pi * search_time_;
     const Vec3 wobble = params_.search_tilt * Vec3(std::sin(1.3 * tau), std::sin(1.7 * tau), 0.0);
-    placeReference(p_MP_, turn_ + wobble);
+    placeReference(p_MP_, turn_ + wobble + searchTurn(tau));
     pushAcross(percept, X_WM_.q * Vec3::UnitZ(), kStaysBack);
 
     const double depth = seenDepth(percept);
@@ -237,6 +269,7 @@ void Hand::search(const Percept& percept) noexcept {
 
 void Hand::giveUp() noexcept {
     ++attempt_;
+    turnToFit();
     look();
     startReach(HandPhase::Lift, aboveMouth(), kLiftDuration / pace_);
 }
@@ -295,6 +328,8 @@ void Hand::backOff(const Percept& percept) noexcept {
     const double yields = std::max(baseline_, 0.0) * params_.insert_force / params_.press_force + kDrop;
     if (best_depth_ > std::max(yields, kClearlyInside) || stalls_ < kMostStalls) {
         enter(HandPhase::Insert);
+    } else if (turns_tried_ == 0 && looksTurned()) {
+        giveUp();
     } else if (spiral_angle_ > 0.0) {
         resumeSearch();
     } else {
@@ -325,6 +360,8 @@ void Hand::startInserting(const Pose& X_WMouth, double depth, const Quat& q_WP) 
     attempt_ = 0;
     spiral_angle_ = 0.0;
     bottomed_ = doubted_ = false;
+    turns_tried_ = 0;
+    fitting_turn_ = 0.0;
     look();
     startReach(HandPhase::Approach, aboveMouth(), params_.approach_duration / pace_);
 }

@@ -60,6 +60,10 @@ private:
     void startReach(HandPhase phase, const Pose& to, double duration) noexcept;
     void look() noexcept;
     void believe() noexcept;
+    double seenTurned() const noexcept;
+    bool looksTurned() const noexcept;
+    void turnToFit() noexcept;
+    Vec3 searchTurn(double tau) const noexcept;
     double seenDepth(const Percept& percept) const noexcept;
     Vec3 seenPosition(const Percept& percept) const noexcept;
     Pose aboveMouth() const noexcept;
@@ -95,11 +99,13 @@ private:
     Pose X_TM_;       // how wrongly it was looked at
     Pose X_WM_;
     Quat q_goal_;                 // the part's orientation along the believed axis
+    double fitting_turn_ = 0.0;   // about that axis, on top of the orientation at the start [rad]
     Vec3 p_MP_ = Vec3::Zero();    // intended tip in M [m]
     Vec3 turn_ = Vec3::Zero();    // intended rotation on top of q_goal_, rotation vector in W
     double baseline_ = 0.0;       // seen depth at which pressing got no further [m]
     Vec3 centre_ = Vec3::Zero();  // of the spiral, in M
     int attempt_ = 0;             // searches since go
+    int turns_tried_ = 0;         // of them with the part turned to fit
     double spiral_angle_ = 0.0;   // [rad]
     double caught_ = 0.0;         // how long something has held the tip sideways [s]
     double search_time_ = 0.0;    // since the spiral was last taken up [s]

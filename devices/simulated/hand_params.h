@@ -64,6 +64,7 @@ struct VisibleTask {
     double insertion_depth = 0.020;  // [m], > 0
     std::variant<std::monostate, CompareGoal, PlaceGoal, FollowGoal, HoldGoal, AssembleGoal> goal = {};
     std::optional<std::size_t> target_hand = {};  // that holds the target, which then moves; none: it rests
+    bool round = true;                            // seen: turned about its z axis the held part looks the same
 };
 
 /// How the handle maps to the held part: X_WH = X_WB · scale(X_BD) · X_DH, the scale acting on the position.

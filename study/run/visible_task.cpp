@@ -1,6 +1,8 @@
 #include "study/run/visible_task.h"
 
 #include <limits>
+#include <type_traits>
+#include <variant>
 
 #include "core/geometry/triangle_distance.h"
 #include "core/shape/shape.h"
@@ -22,6 +24,18 @@ Vec3 closestOn(const geometry::TriangleMesh& mesh, const Vec3& p) {
         closest = q;
     }
     return closest;
+}
+
+/// About its z axis. Of a mesh nobody says: it may be turned in vain.
+bool isRound(const scene::PartSpec& part) {
+    const auto* shape = std::get_if<shape::Shape>(&part.geometry);
+    if (shape == nullptr) return false;
+    return std::visit(
+        []<class Form>(const Form&) {
+            return !std::is_same_v<Form, shape::Box> && !std::is_same_v<Form, shape::Sheet> &&
+                   !std::is_same_v<Form, shape::SquarePeg> && !std::is_same_v<Form, shape::KeyedPeg>;
+        },
+        *shape);
 }
 
 Pose shownPose(const scene::PartSpec& part) { return {part.X_WP.q, part.X_WP.p + part.shown_offset}; }
@@ -74,7 +88,10 @@ simulated::VisibleTask visibleTask(const plan::Condition& condition, BuiltParts 
     if (const auto* assembly = std::get_if<plan::AssemblyTask>(&condition.task.form))
         return assemblyTask(condition, *assembly, 0, parts);
     simulated::VisibleTask task;
-    if (const auto* held = plan::heldPart(condition.scene)) task.X_WHeldStart = shownPose(*held);
+    if (const auto* held = plan::heldPart(condition.scene)) {
+        task.X_WHeldStart = shownPose(*held);
+        task.round = isRound(*held);
+    }
     if (const auto* target = plan::partNamed(condition.scene, condition.task.target)) {
         task.X_WTarget = shownPose(*target);
         if (target->held && target->hand > 0) task.target_hand = target->hand;
