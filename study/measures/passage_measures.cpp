@@ -76,7 +76,8 @@ std::vector<Measure> passageMeasures() {
     return {
         {{"passage_time_s", "Time in the passage", "s",
           "from the last entry to the tick at which the proxy's origin is through; empty without; entry: the proxy's "
-          "origin crosses z = 0 of the target's frame from above within half the passage's width of the z axis; "
+          "origin crosses z = 0 of the target's frame from above, or from less than 0.2 mm below, within half the "
+          "passage's width of the z axis; "
           "through: it gets from the passage below z = -length; time: as for the trial time"},
          passageTime},
         {{"passage_path_m", "Path in the passage", "m",

@@ -8,8 +8,9 @@
 namespace passung::measures {
 
 /// The way of the proxy's origin through a passage, record by record. It enters where it crosses the plane z = 0 from
-/// above, not farther than half the width from the z axis; it is in the passage until it leaves upwards or to a side;
-/// it is through once it gets from the passage below z = -length. Whoever leaves has to enter anew.
+/// above, or from less than 0.2 mm below, not farther than half the width from the z axis; it is in the passage until
+/// it leaves upwards or to a side; it is through once it gets from the passage below z = -length. Whoever leaves has to
+/// enter anew.
 class PassageWatch {
 public:
     PassageWatch(const PassageFacts& facts, const Pose& X_WT) : facts_(facts), X_TW_(X_WT.inverse()) {}

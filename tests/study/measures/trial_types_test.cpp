@@ -159,6 +159,18 @@ TEST(NarrowPassage, WhoLeavesEntersAnewAndWhoGoesRoundHasNotComeThrough) {
     EXPECT_EQ(watch.entries(), 3);
 }
 
+TEST(NarrowPassage, WhoRestsOnTheRimBesideItAndSlidesInHasEntered) {
+    // Truth: closed form: a tilted tip whose origin is 0.05 mm below the mouth 6 mm beside the axis; not from 0.3 mm.
+    for (const double depth : {0.00005, 0.0003}) {
+        PassageWatch watch(PassageFacts{0.010, 0.010}, Pose{});
+        std::int64_t tick = 0;
+        for (const auto& [x, z] : {std::pair{0.006, 0.001}, {0.006, -depth}, {0.004, -depth}, {0.0, -0.011}})
+            watch.follow(recordAt(tick++, Vec3(x, 0, z)));
+        EXPECT_EQ(watch.through(), depth < 0.0002) << depth;
+        EXPECT_EQ(watch.entries(), depth < 0.0002 ? 1 : 0) << depth;
+    }
+}
+
 // ---- contour following ------------------------------------------------------------------------------------------
 
 TEST(ContourFollowing, DeviationAndForceAreThoseOfTheFollowedTicks) {
