@@ -1,5 +1,6 @@
 #include "devices/simulated/compare_hand.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -13,7 +14,8 @@ constexpr double kWave = 0.9;            // [Hz] of pressing
 constexpr double kStroke = 0.5;          // [Hz]
 constexpr double kStrokeWidth = 6e-3;    // [m] to either side
 constexpr double kStrokeForce = 0.7;     // of the force of pressing
-constexpr double kFeltForce = 0.5;       // [N] from which on a contact is judged
+constexpr double kShakeWidth = 12e-3;    // [m] to either side
+constexpr double kRestForce = 0.3;       // of the force of pressing
 constexpr double kThink = 0.4;           // [s] before the answer, beside the lapse
 constexpr double kReturnDuration = 0.9;  // [s] back to the start
 constexpr double kTurns = 2.0 * std::numbers::pi;
@@ -24,7 +26,8 @@ CompareHand::CompareHand(const HandParams& params, const VisibleTask& task, cons
                          std::uint64_t seed)
     : Arm(params, task, registration, seed),
       goal_(std::get<CompareGoal>(task_.goal)),
-      attention_(seed ^ fnv1a64("attention")) {}
+      attention_(seed ^ fnv1a64("attention")),
+      impression_(goal_.quantity) {}
 
 void CompareHand::enter(Phase phase) noexcept {
     phase_ = phase;
@@ -39,10 +42,7 @@ void CompareHand::choose(const Percept& percept) noexcept {
             break;
         case Phase::HoldStart:
             removeOffset(percept);
-            if (!percept.go) break;
-            p_TP_ = task_.X_WTarget.inverse() * X_WRef_.p;
-            count_ = way_ = force_ = way_way_ = way_force_ = changes_ = change_square_ = 0.0;
-            enter(Phase::Down);
+            if (percept.go) start(percept);
             break;
         case Phase::Down:
             down(percept);
@@ -64,47 +64,68 @@ void CompareHand::choose(const Percept& percept) noexcept {
     if (feels && t_ > 0.0 && !percept.go) endInterval();
 }
 
+Vec3 CompareHand::feltPlace(const Percept& percept) const noexcept {
+    return task_.X_WTarget.inverse() * percept.X_WFelt.p;
+}
+
+void CompareHand::start(const Percept& percept) noexcept {
+    p_TP_ = task_.X_WTarget.inverse() * X_WRef_.p;
+    touch_ = feltPlace(percept);
+    felt_start_ = touch_.z();
+    reached_ = false;
+    impression_.clear();
+    const bool in_the_air = goal_.quantity == Quantity::Force || goal_.quantity == Quantity::Inertia;
+    enter(in_the_air ? Phase::Feel : Phase::Down);
+}
+
 void CompareHand::down(const Percept& percept) noexcept {
     p_TP_.z() -= pace_ * params_.descend_speed * kTickSeconds;
     X_WRef_.p = task_.X_WTarget * p_TP_;
+    if (!reached_ && percept.F_felt.force.norm() >= kNothingFelt) {
+        reached_ = true;
+        impression_.touch(std::max(0.0, felt_start_ - feltPlace(percept).z()));
+    }
     if (!touches(percept)) return;
-    touch_ = task_.X_WTarget.inverse() * percept.X_WFelt.p;
+    touch_ = feltPlace(percept);
     enter(Phase::Feel);
 }
 
-void CompareHand::feel(const Percept& percept) noexcept {
-    const double wave = goal_.roughness ? kStrokeForce : 0.55 - 0.45 * std::cos(kTurns * kWave * t_);
-    p_TP_ = touch_;
-    p_TP_.z() -= wave * params_.press_force / params_.stiffness;
-    if (goal_.roughness) p_TP_.x() += kStrokeWidth * std::sin(kTurns * kStroke * t_);
-    X_WRef_.p = task_.X_WTarget * p_TP_;
-    const double height = (task_.X_WTarget.inverse() * percept.X_WFelt.p).z();
-    learn(touch_.z() - height, task_.X_WTarget.q.conjugate() * percept.F_felt.force);
+/// Where the part shall be at this moment of feeling.
+Vec3 CompareHand::intended() const noexcept {
+    const double press = params_.press_force / params_.stiffness;
+    const double shake = std::sin(kTurns * kShakes * t_);
+    Vec3 p = touch_;
+    switch (goal_.quantity) {
+        case Quantity::Stiffness:
+            p.z() -= (0.55 - 0.45 * std::cos(kTurns * kWave * t_)) * press;
+            break;
+        case Quantity::Roughness:
+            p.z() -= kStrokeForce * press;
+            p.x() += kStrokeWidth * std::sin(kTurns * kStroke * t_);
+            break;
+        case Quantity::Viscosity:
+            p.z() -= (kStrokeForce + 0.3 * shake) * press;
+            break;
+        case Quantity::Inertia:
+            p.x() += kShakeWidth * shake;
+            break;
+        case Quantity::Position:
+            p.z() -= kRestForce * press;
+            break;
+        case Quantity::Force:
+            break;
+    }
+    return p;
 }
 
-void CompareHand::learn(double depth, const Vec3& force) noexcept {
-    if (force.z() < kFeltForce) return;
-    count_ += 1.0;
-    way_ += depth;
-    force_ += force.z();
-    way_way_ += depth * depth;
-    way_force_ += depth * force.z();
-    if (count_ > 1.0) {
-        changes_ += 1.0;
-        change_square_ += (force - last_force_).squaredNorm();
-    }
-    last_force_ = force;
+void CompareHand::feel(const Percept& percept) noexcept {
+    p_TP_ = intended();
+    X_WRef_.p = task_.X_WTarget * p_TP_;
+    impression_.learn(feltPlace(percept) - touch_, task_.X_WTarget.q.conjugate() * percept.F_felt.force);
 }
 
 void CompareHand::endInterval() noexcept {
-    double felt = 0.0;
-    if (goal_.roughness) {
-        felt = changes_ > 0.0 ? std::sqrt(change_square_ / changes_) : 0.0;
-    } else {
-        const double spread = count_ * way_way_ - way_ * way_;
-        felt = spread > 0.0 ? std::max(0.0, (count_ * way_force_ - way_ * force_) / spread) : 0.0;
-    }
-    impressions_[intervals_++] = felt * std::exp(params_.feeling_error * perception_.normal());
+    impressions_[intervals_++] = impression_.value() * std::exp(params_.feeling_error * perception_.normal());
     startReach(task_.X_WHeldStart, kReturnDuration / pace_);
     phase_ = intervals_ < impressions_.size() ? Phase::ToStart : Phase::Think;
 }

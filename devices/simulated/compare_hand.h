@@ -3,12 +3,13 @@
 #include <array>
 
 #include "devices/simulated/arm.h"
+#include "devices/simulated/impression.h"
 
 namespace passung::simulated {
 
-/// A hand that feels something twice and says in which interval there was more of it. In each interval it goes straight
-/// down onto the target; stiffness: it presses in slow waves and takes the slope of felt force over felt way;
-/// roughness: it strokes under even pressure and takes the root mean square of the felt force's changes. What an
+/// A hand that feels something twice and says in which interval there was more of it (impression.h). For force it keeps
+/// the part where it starts, for inertia it shakes it there; else it goes straight down onto the target and, stiffness:
+/// presses in slow waves; viscosity: in quicker ones; roughness: strokes under even pressure; position: rests. What an
 /// interval felt like is remembered with HandParams::feeling_error; in a share of lapse_rate of the trials, and where
 /// both felt the same, the answer is left to chance; an interval in which nothing was touched felt like nothing.
 class CompareHand final : public Arm {
@@ -23,9 +24,11 @@ private:
     void begin() noexcept override { phase_ = Phase::ToStart; }
     void choose(const Percept& percept) noexcept override;
     void enter(Phase phase) noexcept;
+    void start(const Percept& percept) noexcept;
     void down(const Percept& percept) noexcept;
     void feel(const Percept& percept) noexcept;
-    void learn(double depth, const Vec3& force) noexcept;
+    Vec3 intended() const noexcept;
+    Vec3 feltPlace(const Percept& percept) const noexcept;
     void endInterval() noexcept;
     int answer() noexcept;
 
@@ -35,11 +38,10 @@ private:
     std::size_t intervals_ = 0;
     std::array<double, 2> impressions_{};
     Vec3 p_TP_ = Vec3::Zero();   // intended, in the target's frame [m]
-    Vec3 touch_ = Vec3::Zero();  // where the target was touched
-    // of the running interval
-    double count_ = 0.0, way_ = 0.0, force_ = 0.0, way_way_ = 0.0, way_force_ = 0.0;
-    double changes_ = 0.0, change_square_ = 0.0;
-    Vec3 last_force_ = Vec3::Zero();
+    Vec3 touch_ = Vec3::Zero();  // where the target was touched, or what is shaken began
+    double felt_start_ = 0.0;    // height at which the interval began
+    bool reached_ = false;       // the first force was felt
+    Impression impression_;      // of the running interval
 };
 
 }  // namespace passung::simulated

@@ -11,9 +11,12 @@
 
 namespace passung::simulated {
 
+/// What of an interval is felt; how: impression.h.
+enum class Quantity { Stiffness, Roughness, Force, Viscosity, Inertia, Position };
+
 /// Two intervals are to be felt and compared.
 struct CompareGoal {
-    bool roughness = false;  // else stiffness
+    Quantity quantity = Quantity::Stiffness;
 };
 
 /// The held part is to be put to a pose that is drawn.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <variant>
@@ -43,7 +44,9 @@ struct FreePlacementTask {
 };
 
 /// What a simulated person compares in the intervals of a pair.
-enum class Judged { Stiffness, Roughness };
+enum class Judged { Stiffness, Roughness, Force, Viscosity, Inertia, Position };
+inline constexpr std::array<const char*, 6> kJudgedNames{"stiffness", "roughness", "force",
+                                                         "viscosity", "inertia",   "position"};
 
 /// Two intervals feel different, and the person says in which there was more of something.
 struct DiscriminationPairTask {

@@ -40,7 +40,7 @@ struct FormJson {
         json.number("interval_s", task.interval)
             .number("answer_s", task.answer)
             .text("question", task.question)
-            .text("judged", task.judged == plan::Judged::Stiffness ? "stiffness" : "roughness");
+            .text("judged", plan::kJudgedNames[static_cast<std::size_t>(task.judged)]);
     }
     void operator()(const plan::AssemblyTask& task) const {
         std::vector<std::string> steps;

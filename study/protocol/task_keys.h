@@ -50,7 +50,7 @@ inline constexpr std::array kTaskKeys{
     Key{"task.discrimination_pair", "interval_s", KeyType::Number, {.low = 0, .high = 600, .low_excluded = true}, "", "3", "Length of an interval, from the moment the hand holds the start pose: a pair needs a start_gate. Which interval has the comparison is drawn for every attempt."},
     Key{"task.discrimination_pair", "answer_s", KeyType::Number, {.low = 0, .high = 600, .low_excluded = true}, "", "10", "Time for the answer after the second interval, while nothing is felt: the first button says the first interval, the second button the second."},
     Key{"task.discrimination_pair", "question", KeyType::Text, {}, "", "!", "Question to the participant, such as \"Which was stiffer?\"."},
-    Key{"task.discrimination_pair", "judged", KeyType::Choice, {}, "stiffness|roughness", "stiffness", "Property that a simulated person compares; people are asked the question."},
+    Key{"task.discrimination_pair", "judged", KeyType::Choice, {}, "stiffness|roughness|force|viscosity|inertia|position", "stiffness", "Property that a simulated person compares, going by posture and displayed force alone; people are asked the question. force: of the held part at rest; inertia: of shaking it; position: how far it goes down to the target; else: of pressing on the target, or stroking it."},
 
     Key{"task.assembly", "step", KeyType::Tables, {}, "", "!", "Steps of the assembly, at most 63: success once all are done."},
     Key{"task.assembly", "hints", KeyType::Boolean, {}, "", "true", "True where the goals of the steps that may be done next are drawn."},

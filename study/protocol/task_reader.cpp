@@ -76,7 +76,9 @@ plan::DiscriminationPairTask readPair(const TableReader& read, const StudyTables
     pair.interval = read.number("interval_s");
     pair.answer = read.number("answer_s");
     pair.question = read.text("question");
-    pair.judged = read.text("judged") == "roughness" ? plan::Judged::Roughness : plan::Judged::Stiffness;
+    const auto judged = std::find(plan::kJudgedNames.begin(), plan::kJudgedNames.end(), read.text("judged"));
+    if (judged != plan::kJudgedNames.end())
+        pair.judged = static_cast<plan::Judged>(judged - plan::kJudgedNames.begin());
     if (read.has("comparison") && read.node("comparison")->entries.empty())
         read.fail("comparison", "names no key: both intervals would be the same");
     const scene::StartGate& gate = scene.start_gate;

@@ -50,6 +50,24 @@ void findGrip(const geometry::TriangleMesh& mesh, simulated::AssembleGoal::Part&
     part.below = -box.low.z();
 }
 
+simulated::Quantity quantityOf(plan::Judged judged) {
+    switch (judged) {
+        case plan::Judged::Stiffness:
+            return simulated::Quantity::Stiffness;
+        case plan::Judged::Roughness:
+            return simulated::Quantity::Roughness;
+        case plan::Judged::Force:
+            return simulated::Quantity::Force;
+        case plan::Judged::Viscosity:
+            return simulated::Quantity::Viscosity;
+        case plan::Judged::Inertia:
+            return simulated::Quantity::Inertia;
+        case plan::Judged::Position:
+            return simulated::Quantity::Position;
+    }
+    return simulated::Quantity::Stiffness;
+}
+
 simulated::VisibleTask assemblyTask(const plan::Condition& condition, const plan::AssemblyTask& asked, std::size_t hand,
                                     BuiltParts parts) {
     const scene::Pick& pick = condition.scene.effects.pick;
@@ -106,7 +124,7 @@ simulated::VisibleTask visibleTask(const plan::Condition& condition, BuiltParts 
     else if (const auto* placement = std::get_if<plan::FreePlacementTask>(&form))
         task.goal = simulated::PlaceGoal{placement->X_WGoal, placement->round};
     else if (const auto* pair = std::get_if<plan::DiscriminationPairTask>(&form))
-        task.goal = simulated::CompareGoal{pair->judged == plan::Judged::Roughness};
+        task.goal = simulated::CompareGoal{quantityOf(pair->judged)};
     return task;
 }
 
