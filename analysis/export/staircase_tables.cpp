@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "analysis/export/shared_columns.h"
+#include "analysis/stats/pair_fit.h"
 #include "study/design/adaptive.h"
 
 namespace passung::exporter {
@@ -18,6 +19,12 @@ using store::StaircaseStepRow;
 
 constexpr const char* kEstimate =
     "up-down: mean of the reversals but the first ones, an even number; psi: where the posterior is highest";
+constexpr double kFitLapse = 0.02;  // share of trials left to chance, of every fit
+constexpr const char* kFit =
+    "of a pair, by reference: the likeliest sigma of P(comparison named) = 0.01 + 0.98 Phi(x / (sqrt(2) sigma)), x = "
+    "level - reference or, on a logarithmic axis, ln(level / reference), over the track's trials that count; NA: the "
+    "reference is not known, or no sigma explains the answers best";
+constexpr const char* kFitBound = "95 % interval of sigma by likelihood ratio; NA: no such bound";
 constexpr const char* kDeviation = "psi: posterior standard deviation, in levels or, on a logarithmic axis, decades";
 
 /// Columns that both tables begin with, of rows with the members `attempt` and `step`.
@@ -99,7 +106,36 @@ struct Threshold {
     std::int64_t trials = 0, invalidated = 0;
     std::optional<std::int64_t> reversals = {};
     std::optional<double> estimate = {}, decades = {}, deviation = {};
+    std::optional<double> reference = {}, jnd75 = {};
+    std::optional<stats::PairFit> fit = {};
 };
+
+/// The axis of the fit: where the error of an impression is as large everywhere.
+double onFitAxis(double level, const store::StaircaseTrackRow& track) {
+    const double reference = track.reference.value();
+    return track.params.logarithmic ? std::log(level / reference) : level - reference;
+}
+
+/// The function of a pair's reference and all answers that count.
+void fitFunction(const Told& told, const store::StaircaseTrackRow& track, Threshold& threshold) {
+    threshold.reference = track.reference;
+    if (!track.reference || (track.params.logarithmic && !(*track.reference > 0.0))) return;
+    std::map<double, stats::LevelCount> counts;
+    for (const auto& [id, answer] : told.answers) {
+        const auto& [attempt, step] = answer;
+        if (!attempt->valid) continue;
+        stats::LevelCount& count = counts[step->level];
+        count.level = onFitAxis(step->level, track);
+        count.trials += 1.0;
+        count.positive += *step->positive ? 1.0 : 0.0;
+    }
+    std::vector<stats::LevelCount> listed;
+    for (const auto& [level, count] : counts) listed.push_back(count);
+    threshold.fit = stats::fitPairs(listed, kFitLapse);
+    if (!threshold.fit) return;
+    const double jnd = threshold.fit->jnd75();
+    threshold.jnd75 = track.params.logarithmic ? *track.reference * std::expm1(jnd) : jnd;
+}
 
 Threshold thresholdOf(const StudyData& study, const Told& told) {
     Threshold threshold{&told.attempt(), &told.step()};
@@ -115,11 +151,38 @@ Threshold thresholdOf(const StudyData& study, const Told& told) {
         if (attempt->valid && track && !track->finished()) track->answer(step->level, *step->positive);
     }
     if (!track) return threshold;
+    fitFunction(told, *known, threshold);
     threshold.reversals = track->reversals();
     threshold.estimate = track->estimate();
     if (threshold.estimate && known->params.logarithmic) threshold.decades = std::log10(*threshold.estimate);
     threshold.deviation = track->uncertainty();
     return threshold;
+}
+
+ColumnsOf<Threshold> fitColumns() {
+    const auto low = [](const Threshold& row) {
+        return row.fit && row.fit->sigma_low > 0.0 ? cell(row.fit->sigma_low) : kMissing;
+    };
+    return {
+        {"reference", "The key in the interval without the comparison, in its unit; NA: no pair, or not known",
+         "number", &Threshold::reference},
+        {"sigma",
+         "Error of one interval's impression, a standard deviation: in the key's unit or, on a logarithmic axis, of "
+         "the natural logarithm, about a share",
+         "number",
+         [](const Threshold& row) { return row.fit ? cell(row.fit->sigma) : kMissing; },
+         {.formula = kFit}},
+        {"sigma_low", "Lower bound of sigma", "number", low, {.formula = kFitBound}},
+        {"sigma_high",
+         "Upper bound of sigma",
+         "number",
+         [](const Threshold& row) { return row.fit && row.fit->sigma_high ? cell(*row.fit->sigma_high) : kMissing; },
+         {.formula = kFitBound}},
+        {"jnd75",
+         "Difference from the reference, in the key's unit, that is told in 75 % of the trials without lapses",
+         "number",
+         &Threshold::jnd75,
+         {.formula = "d = sqrt(2) sigma 0.6745; on a logarithmic axis reference (exp(d) - 1)"}}};
 }
 
 ColumnsOf<Threshold> thresholdColumns(const StudyData& study) {
@@ -139,6 +202,7 @@ ColumnsOf<Threshold> thresholdColumns(const StudyData& study) {
                       &Threshold::decades,
                       {.formula = "log10(estimate)"}},
                      {"estimate_sd", "How unsure it is", "number", &Threshold::deviation, {.formula = kDeviation}}});
+    append(columns, fitColumns());
     append(columns, ColumnsOf<AttemptRow>{protocolColumn<AttemptRow>(kInFolder)}, attemptOf<Threshold>);
     return columns;
 }

@@ -1,6 +1,7 @@
 #include "study/protocol/plan_json.h"
 
 #include <filesystem>
+#include <limits>
 
 #include "core/base/json.h"
 #include "core/scene/contact_geometry.h"
@@ -367,6 +368,7 @@ std::string staircaseJson(const plan::StudyPlan& plan, const plan::Staircase& st
         .text("measure", staircase.measure)
         .number("threshold", staircase.threshold)
         .boolean("above", staircase.above)
+        .number("reference", staircase.reference.value_or(std::numeric_limits<double>::quiet_NaN()))
         .str();
 }
 

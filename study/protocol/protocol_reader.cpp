@@ -257,6 +257,7 @@ private:
             for (const std::size_t c : conditionsOf(block)) {
                 staircase.first_variant.push_back(plan_.conditions.size());
                 presented_ = &content;
+                if (c == conditionsOf(block).front()) first_reference_ = true;
                 for (std::size_t level = 0; level < staircase.levels.size(); ++level) {
                     const Override step = content.change(level);
                     readCondition(*scene, plan_.conditions[c].levels,
@@ -394,23 +395,32 @@ private:
             if (undoable_.size() == before) checkBody(tables, condition, *device, geometries_, undoable_);
             checkHuman(tables, condition, *device, step != nullptr ? step->path : "", undoable_, warnings_);
         }
-        if (step != nullptr && presented_ != nullptr) checkSide(tables.scene, condition, *step);
+        if (step != nullptr && presented_ != nullptr) compareWithReference(tables.scene, condition, *step);
+    }
+
+    /// What a key of the scene is in the interval that is not the comparison; nothing if it is not known here.
+    static std::optional<double> referenceOf(const Node& scene, const scene::ContactSpec& contact,
+                                             const std::string& key) {
+        if (const Node* written = numberAt(scene, key)) return written->number;
+        if (key == "contact.stiffness_N_per_m") return contact.stiffness;
+        if (key == "contact.tolerance_um") return 1e6 * contact.tolerance;
+        if (key == "contact.spacing_mm") return 1e3 * contact.spacing;
+        return std::nullopt;
     }
 
     /// "Correct" is the more frequent the farther the comparison is from its reference: so levels have to begin there.
-    void checkSide(const Node& scene, const plan::Condition& condition, const Override& step) {
+    void compareWithReference(const Node& scene, const plan::Condition& condition, const Override& step) {
         constexpr std::string_view kComparison = "task.comparison.";
-        const plan::Staircase& staircase = presented_->staircase;
+        plan::Staircase& staircase = presented_->staircase;
         if (staircase.measure != "correct" || !step.path.starts_with(kComparison)) return;
         const std::string key = step.path.substr(kComparison.size());
-        const Node* written = numberAt(scene, key);
-        const auto& contact = condition.scene.contact;
-        const double reference = written != nullptr                   ? written->number
-                                 : key == "contact.stiffness_N_per_m" ? contact.stiffness
-                                 : key == "contact.tolerance_um"      ? 1e6 * contact.tolerance
-                                 : key == "contact.spacing_mm"        ? 1e3 * contact.spacing
-                                                                      : step.value->number;
-        const double level = step.value->number;
+        const auto known = referenceOf(scene, condition.scene.contact, key);
+        if (first_reference_)
+            staircase.reference = known;
+        else if (staircase.reference != known)
+            staircase.reference.reset();
+        first_reference_ = false;
+        const double level = step.value->number, reference = known.value_or(level);
         if (staircase.above ? level >= reference : level <= reference) return;
         undoable_.push_back(errorAt(
             step.value->place, "staircase." + staircase.name, valueText(*step.value),
@@ -505,10 +515,11 @@ private:
     bool levels_sound_ = true, tasks_sound_ = true, staircases_sound_ = true;  // so far
     PartGeometries geometries_;
     SceneReading scenes_;
-    std::vector<std::string> warnings_;            // about parts and ways
-    const StaircaseContent* presented_ = nullptr;  // whose levels are being read
-    Errors undoable_;                              // see Read
-    Errors for_people_;                            // likewise
+    std::vector<std::string> warnings_;      // about parts and ways
+    StaircaseContent* presented_ = nullptr;  // whose levels are being read
+    bool first_reference_ = false;           // no condition has told its reference yet
+    Errors undoable_;                        // see Read
+    Errors for_people_;                      // likewise
     std::vector<FactorContent> factors_;
     std::vector<StaircaseContent> staircases_;
 };

@@ -289,6 +289,7 @@ struct StaircaseTrackRow {
     std::string protocol_sha256;
     std::string staircase, track;
     design::AdaptiveParams params;
+    std::optional<double> reference = {};  // of a pair's key in the interval without the comparison
 };
 
 /// A trial of a staircase.

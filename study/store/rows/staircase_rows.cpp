@@ -37,6 +37,7 @@ struct StoredTrack {
     std::int64_t max_trials = 0;
     std::int64_t down_after = 0, late_after = 0, max_reversals = 0, skip_reversals = 0;
     double start = 0.0, step_down = 0.0, step_up = 0.0, late_factor = 0.0;
+    std::optional<double> reference;
     double guess = 0.0, lapse = 0.0, sigma_low = 0.0, sigma_high = 0.0;
 };
 
@@ -70,7 +71,8 @@ std::vector<StoredTrack> readStoredTracks(const Database& database) {
         {"t.value->>'guess'", &Row::guess},
         {"t.value->>'lapse'", &Row::lapse},
         {"t.value->>'sigma_low'", &Row::sigma_low},
-        {"t.value->>'sigma_high'", &Row::sigma_high}};
+        {"t.value->>'sigma_high'", &Row::sigma_high},
+        {"s.value->>'reference'", &Row::reference}};
     return columns.all(database,
                        "FROM protocol_version, json_each(expanded_json, '$.staircases') s, "
                        "json_each(s.value, '$.tracks') t ORDER BY 1, s.key, t.key");
@@ -110,7 +112,7 @@ std::vector<StaircaseTrackRow> readStaircaseTracks(const Database& database) {
     std::vector<StaircaseTrackRow> rows;
     for (const StoredTrack& track : readStoredTracks(database))
         if (!track.levels.empty())
-            rows.push_back({track.protocol_sha256, track.staircase, track.track, paramsOf(track)});
+            rows.push_back({track.protocol_sha256, track.staircase, track.track, paramsOf(track), track.reference});
     return rows;
 }
 
