@@ -32,8 +32,8 @@ struct Staircase {
     std::string measure;
     double threshold = 0.0;  // of the measure
     bool above = true;       // positive: the measure is above the threshold; else: below it
-    /// Of a pair whose comparison the key changes, judged by `correct`: what the key is in the other interval. Empty for
-    /// others, where the protocol does not write it, or where conditions differ in it.
+    /// Of a pair whose comparison the key changes, judged by `correct`: what the key is in the other interval. Empty
+    /// for others, where the protocol does not write it, or where conditions differ in it.
     std::optional<double> reference = {};
     /// Index of the plan's condition that presents the first level in place of condition i of those that the block has;
     /// the others follow.
