@@ -23,15 +23,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Every study that is shipped as an example, relative to `protocols`; rendering_methods_test.cpp has the one that
-/// takes longer than a test may.
+/// Every study that is shipped as an example, relative to `protocols`; rendering_methods_test.cpp and
+/// thresholds_test.cpp have those that take longer than a test may.
 std::vector<std::string> shippedStudies() {
     const fs::path protocols = fs::path(PASSUNG_SOURCE_DIR) / "protocols";
     std::vector<std::string> studies;
     for (const auto& entry : fs::recursive_directory_iterator(protocols)) {
         const std::string name = fs::relative(entry.path(), protocols).string();
         if (entry.path().extension() != ".toml") continue;
-        if (name.starts_with("rendering_methods")) continue;
+        if (name.starts_with("rendering_methods") || name.starts_with("thresholds")) continue;
         if (readText(entry.path()).find("\n[study]\n") != std::string::npos) studies.push_back(name);
     }
     std::sort(studies.begin(), studies.end());
