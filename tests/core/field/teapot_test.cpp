@@ -15,6 +15,7 @@
 #include "core/field/distance_field.h"
 #include "core/scene/part.h"
 #include "tests/support/brute_force_mesh.h"
+#include "tests/support/length.h"
 
 // The teapot of protocols/thesis_queries as it is: open below, with pieces that pass through each other.
 
@@ -107,7 +108,7 @@ TEST(Teapot, OfAHundredPointsTheFieldIsAtNinetyNineWithinOnePercentOfTheExactDis
     const geometry::TriangleMesh raw = readOff(kTeapot);
     const std::vector<Vec3> points = somePoints(raw, 5000);
     std::vector<std::pair<double, double>> settings{{2e-3, 20e-6}};  // cell, tolerance
-    if (std::getenv("PASSUNG_LONG") != nullptr) settings.insert(settings.end(), {{1e-3, 20e-6}, {0.0, 100e-6}});
+    if (test::atFullLength()) settings.insert(settings.end(), {{1e-3, 20e-6}, {0.0, 100e-6}});
     for (const auto& [cell, tolerance] : settings) {
         const scene::Part part = buildTeapot(cell, tolerance);
         const Found found = compare(*part.field, raw, points);

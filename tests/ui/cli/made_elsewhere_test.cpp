@@ -13,6 +13,7 @@
 
 #include "study/store/read/store_reader.h"
 #include "tests/analysis/export/csv_reader.h"
+#include "tests/support/length.h"
 #include "tests/support/mesh_crossing.h"
 #include "tests/ui/cli/program.h"
 
@@ -23,8 +24,6 @@ namespace passung::test {
 namespace {
 
 const std::filesystem::path kParts = PASSUNG_SOURCE_DIR "/tests/data/parts";
-
-bool allOfThem() { return std::getenv("PASSUNG_LONG") != nullptr; }
 
 /// Binary STL in mm, corner by corner: a reader of its own.
 geometry::TriangleMesh readStl(const std::string& name) {
@@ -163,7 +162,7 @@ TEST_F(MadeElsewhere, PegsOfFourToSixteenMillimetresGoIntoHolesWithFiftyMicromet
                                 {"round_12", "round_12_hole"}, {"round_16", "round_16_hole"},
                                 {"rect_4", "rect_4_hole"},     {"rect_8", "rect_8_hole"},
                                 {"rect_16", "rect_16_hole"}};
-    const Judged judged = run(passageStudy(fits, 0.0, allOfThem() ? 143 : 1, 60), fits, allOfThem() ? 50 : 100);
+    const Judged judged = run(passageStudy(fits, 0.0, atFullLength() ? 143 : 1, 60), fits, atFullLength() ? 50 : 100);
     std::printf("[ pegs  ] inserted %d of %d, %lld poses, least gap %.2f um\n", judged.inserted, judged.trials,
                 static_cast<long long>(judged.poses), 1e6 * judged.least_gap);
     EXPECT_GE(judged.inserted, 0.99 * judged.trials);
@@ -176,7 +175,7 @@ TEST_F(MadeElsewhere, PegsThatAreTurnedAreTurnedToFit) {
     const std::vector<Fit> fits{{"d_8", "d_8_hole"}, {"square_8", "square_8_hole"}};
     Judged all;
     for (const double turn : {20.0, -13.0}) {
-        const Judged judged = run(passageStudy(fits, turn, allOfThem() ? 50 : 1, 60), fits, 100);
+        const Judged judged = run(passageStudy(fits, turn, atFullLength() ? 50 : 1, 60), fits, 100);
         all.trials += judged.trials;
         all.inserted += judged.inserted;
         all.least_gap = std::min(all.least_gap, judged.least_gap);
@@ -189,14 +188,14 @@ TEST_F(MadeElsewhere, PegsThatAreTurnedAreTurnedToFit) {
 TEST_F(MadeElsewhere, PegsThatAreTooLargeAreNot) {
     // Truth: closed form: 50 um too wide.
     const std::vector<Fit> fits{{"d_8", "d_8_hole_small"}, {"square_8", "square_8_hole_small"}};
-    const Judged judged = run(passageStudy(fits, 12.0, allOfThem() ? 10 : 1, allOfThem() ? 40 : 12), fits, 200);
+    const Judged judged = run(passageStudy(fits, 12.0, atFullLength() ? 10 : 1, atFullLength() ? 40 : 12), fits, 200);
     EXPECT_EQ(judged.inserted, 0);
     EXPECT_GT(judged.least_gap, 0.0);
 }
 
 TEST_F(MadeElsewhere, APegThatIsInTheHandFromTheStartIsLetGoWhereItBelongs) {
     // Truth: the rule of success of the assembly.
-    std::string study = passageStudy({{"rect_8", "rect_8_hole"}}, 15.0, allOfThem() ? 10 : 2, 60);
+    std::string study = passageStudy({{"rect_8", "rect_8_hole"}}, 15.0, atFullLength() ? 10 : 2, 60);
     const auto cut = [&study](const std::string& from, const std::string& to, const std::string& by) {
         const std::size_t begin = study.find(from);
         study.replace(begin, study.find(to, begin) - begin, by);
@@ -288,7 +287,7 @@ TEST_F(MadeElsewherePair, GearsMeshWithoutAToothThatJumps) {
                             Vec3(0.02 * s * std::sin(9 * t), 0.02 * s * std::sin(7 * t), 0.31 * std::sin(4 * t))),
                         Vec3(0.0401 - 0.004 * s, 0.002 * s * std::sin(5 * t), 0.001 * s * std::sin(3 * t))};
         },
-        allOfThem() ? 10000 : 1500, 4);
+        atFullLength() ? 10000 : 1500, 4);
     double farthest = 0.0;
     for (const Pose& X : followed.proxy) farthest = std::max(farthest, X.p.head<2>().norm());
     std::printf("[ gears ] crossings %d of %zu ticks, suspended %d, axes up to %.2f mm apart\n", followed.crossings,
@@ -308,7 +307,7 @@ TEST_F(MadeElsewherePair, ABoltInItsNutCrossesNothingAndSaysHowFarItLags) {
                         Vec3(0.0004 * s * std::sin(7 * t), 0.0004 * s * std::sin(5 * t),
                              0.002 * turn / (2.0 * std::numbers::pi) + 0.0005 * s * std::sin(13 * t))};
         },
-        allOfThem() ? 4000 : 600, allOfThem() ? 5 : 60);
+        atFullLength() ? 4000 : 600, atFullLength() ? 5 : 60);
     std::printf(
         "[ bolt  ] crossings %d of %zu ticks, suspended %.1f %%, lags up to %.2f mm along its axis, %.0f degrees\n",
         followed.crossings, followed.proxy.size(),
