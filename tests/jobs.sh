@@ -39,22 +39,15 @@ job() {
     if [[ -n $page ]]; then keep_result "$commit"; fi
 }
 
-# every_job FUZZ_SECONDS: all that CI runs. What the sanitizers see of it is what reads foreign files; the rest is among the
-# checks without limit.
+# every_job FUZZ_SECONDS: all that CI runs. What the sanitizers see of it is what reads foreign files and the threads of the
+# loop; the rest is among the checks without limit.
 every_job() {
     job 'g++, assertions, all tests, warnings are errors' env PASSUNG_PRESET=ci ./dev test
-    job 'an edit in a kernel to its tests' edit_to_tests core/motion/constrained_motion.cpp core/motion
     job 'demo study (./dev run)' env -u DISPLAY -u WAYLAND_DISPLAY PASSUNG_PRESET=ci ./dev run
     job 'clang, ASan, UBSan: foreign files' ./dev asan-check hostile
     job 'fuzzers' ./dev fuzz-check "$1"
-    job 'TSan: threads' ./dev tsan-check
+    job 'TSan: threads of the loop' ./dev tsan-check loop
     job 'lint of what changed' env PASSUNG_LINT_MINUTES="${PASSUNG_LINT_MINUTES:-1}" ./dev lint
-}
-
-# edit_to_tests FILE ROOM: what somebody waits who changed FILE.
-edit_to_tests() {
-    touch "$1"
-    env PASSUNG_PRESET=ci ./dev room "$2"
 }
 
 table() {

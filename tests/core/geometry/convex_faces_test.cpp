@@ -60,16 +60,16 @@ double secondsOf(const TriangleMesh& mesh) {
 }
 
 TEST(ConvexFaces, ALargeHubTakesAsLongAsManySmallOnes) {
-    // Truth: invariant: as many triangles around one hub and around five hundred. Were the sides of a hub looked
-    // through one by one, the large one took ten times as long (planted).
-    constexpr int kSides = 60, kHubs = 500;
+    // Truth: invariant: as many triangles around one hub and around two thousand. Were the sides of a hub looked
+    // through one by one, the large one took forty times as long (planted); a busy machine makes it thrice.
+    constexpr int kSides = 60, kHubs = 2000;
     const TriangleMesh one = test::fanMesh(test::circleLine(.01, kSides * kHubs), {0, 0}, 0, true);
     TriangleMesh many;
     for (int i = 0; i < kHubs; ++i)
         test::append(many, test::fanMesh(test::circleLine(.01, kSides), {0, 0}, 0.001 * i, true));
     ASSERT_EQ(one.triangles.size(), many.triangles.size());
     const double large = secondsOf(one), small = secondsOf(many);
-    EXPECT_LT(large, 3.0 * small) << large << " s, " << small << " s";
+    EXPECT_LT(large, 12.0 * small) << large << " s, " << small << " s";
 }
 
 TEST(ConvexFaces, CurvedSurfacesKeepTheirTriangles) {
