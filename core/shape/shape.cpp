@@ -213,6 +213,14 @@ const char* kindName(const Shape& shape) {
         shape);
 }
 
+bool isRound(const Shape& shape) {
+    return std::visit(Overloaded{[](const Sphere&) { return true; }, [](const Cylinder&) { return true; },
+                                 [](const Torus&) { return true; }, [](const Peg&) { return true; },
+                                 [](const ThreadBolt&) { return true; }, [](const ThreadNut&) { return true; },
+                                 [](const auto&) { return false; }},
+                      shape);
+}
+
 std::vector<Dimension> namedDimensions(const Shape& shape) {
     return std::visit([](const auto& s) { return dimensionsOf(s); }, shape);
 }

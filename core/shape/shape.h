@@ -88,6 +88,9 @@ using Shape = std::variant<Sphere, Box, Cylinder, Torus, Sheet, Peg, SquarePeg, 
 /// The kind's name in scene files ("bore_plate").
 const char* kindName(const Shape& shape);
 
+/// True if it looks the same however it is turned about its z axis; a thread does to the eye.
+bool isRound(const Shape& shape);
+
 /// One dimension: its key in scene files and its value [m].
 struct Dimension {
     const char* key;

@@ -1,7 +1,6 @@
 #include "study/run/visible_task.h"
 
 #include <limits>
-#include <type_traits>
 #include <variant>
 
 #include "core/geometry/triangle_distance.h"
@@ -26,16 +25,10 @@ Vec3 closestOn(const geometry::TriangleMesh& mesh, const Vec3& p) {
     return closest;
 }
 
-/// About its z axis. Of a mesh nobody says: it may be turned in vain.
-bool isRound(const scene::PartSpec& part) {
+/// Of a mesh nobody says: it may be turned in vain.
+bool looksRound(const scene::PartSpec& part) {
     const auto* shape = std::get_if<shape::Shape>(&part.geometry);
-    if (shape == nullptr) return false;
-    return std::visit(
-        []<class Form>(const Form&) {
-            return !std::is_same_v<Form, shape::Box> && !std::is_same_v<Form, shape::Sheet> &&
-                   !std::is_same_v<Form, shape::SquarePeg> && !std::is_same_v<Form, shape::KeyedPeg>;
-        },
-        *shape);
+    return shape != nullptr && shape::isRound(*shape);
 }
 
 Pose shownPose(const scene::PartSpec& part) { return {part.X_WP.q, part.X_WP.p + part.shown_offset}; }
@@ -108,7 +101,7 @@ simulated::VisibleTask visibleTask(const plan::Condition& condition, BuiltParts 
     simulated::VisibleTask task;
     if (const auto* held = plan::heldPart(condition.scene)) {
         task.X_WHeldStart = shownPose(*held);
-        task.round = isRound(*held);
+        task.round = looksRound(*held);
     }
     if (const auto* target = plan::partNamed(condition.scene, condition.task.target)) {
         task.X_WTarget = shownPose(*target);
