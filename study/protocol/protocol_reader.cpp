@@ -257,7 +257,6 @@ private:
             for (const std::size_t c : conditionsOf(block)) {
                 staircase.first_variant.push_back(plan_.conditions.size());
                 presented_ = &content;
-                if (c == conditionsOf(block).front()) first_reference_ = true;
                 for (std::size_t level = 0; level < staircase.levels.size(); ++level) {
                     const Override step = content.change(level);
                     readCondition(*scene, plan_.conditions[c].levels,
@@ -267,6 +266,8 @@ private:
             }
             nameBlock(before, block.name);
             if (tasks_sound_) checkMeasure(content);
+            if (references_.size() == 1) staircase.reference = *references_.begin();
+            references_.clear();
             presented_ = nullptr;
             plan_.staircases.push_back(std::move(staircase));
         }
@@ -411,15 +412,11 @@ private:
     /// "Correct" is the more frequent the farther the comparison is from its reference: so levels have to begin there.
     void compareWithReference(const Node& scene, const plan::Condition& condition, const Override& step) {
         constexpr std::string_view kComparison = "task.comparison.";
-        plan::Staircase& staircase = presented_->staircase;
+        const plan::Staircase& staircase = presented_->staircase;
         if (staircase.measure != "correct" || !step.path.starts_with(kComparison)) return;
         const std::string key = step.path.substr(kComparison.size());
         const auto known = referenceOf(scene, condition.scene.contact, key);
-        if (first_reference_)
-            staircase.reference = known;
-        else if (staircase.reference != known)
-            staircase.reference.reset();
-        first_reference_ = false;
+        references_.insert(known);
         const double level = step.value->number, reference = known.value_or(level);
         if (staircase.above ? level >= reference : level <= reference) return;
         undoable_.push_back(errorAt(
@@ -515,11 +512,11 @@ private:
     bool levels_sound_ = true, tasks_sound_ = true, staircases_sound_ = true;  // so far
     PartGeometries geometries_;
     SceneReading scenes_;
-    std::vector<std::string> warnings_;      // about parts and ways
-    StaircaseContent* presented_ = nullptr;  // whose levels are being read
-    bool first_reference_ = false;           // no condition has told its reference yet
-    Errors undoable_;                        // see Read
-    Errors for_people_;                      // likewise
+    std::vector<std::string> warnings_;           // about parts and ways
+    StaircaseContent* presented_ = nullptr;       // whose levels are being read
+    std::set<std::optional<double>> references_;  // of its conditions so far
+    Errors undoable_;                             // see Read
+    Errors for_people_;                           // likewise
     std::vector<FactorContent> factors_;
     std::vector<StaircaseContent> staircases_;
 };
