@@ -85,8 +85,6 @@ double growth(const SampledTool& tool, int ticks) {
     return grown.value();
 }
 
-}  // namespace
-
 TEST(Stability, UndampedUndelayedBorderHasClosedForm) {
     // Truth: closed form, alpha = 2 beta (2 - beta)/(2 + beta) for 0 < beta < 2.
     const double m = 0.3, T = 1e-3;
@@ -296,3 +294,5 @@ TEST(Stability, NonsenseIsNeverStable) {
     bad.stiffness = -1;
     EXPECT_FALSE(isStable(bad));
 }
+
+}  // namespace

@@ -24,8 +24,6 @@ DeviceParams smoothDevice() {
 
 const HandCoupling kNobody{};
 
-}  // namespace
-
 TEST(DeviceDynamics, FreeMotionDecaysExponentially) {
     // Truth: closed form, v = v0 exp(-b t/m), x = v0 m/b (1 - exp(-b t/m)); rotation alike about a fixed axis.
     DeviceParams p = smoothDevice();
@@ -324,3 +322,5 @@ TEST(DeviceDynamics, WallIsStableBelowTheExactBorderAndNotAbove) {
         }
     }
 }
+
+}  // namespace

@@ -64,8 +64,6 @@ bool sameBits(const std::vector<Pose>& a, const std::vector<Pose>& b) {
     return true;
 }
 
-}  // namespace
-
 TEST(MinimumJerk, IsTheQuinticOfFlashAndHogan) {
     // Truth: closed form; the only quintic from 0 to 1 with zero speed and acceleration at both ends, peak speed 15/8.
     EXPECT_EQ(minimumJerk(0), 0);
@@ -236,3 +234,5 @@ TEST(SimulatedDevice, ReadCommandAndShowAreRealTimeSafe) {
     }
     EXPECT_EQ(guard.violations(), 0) << guard.describe();
 }
+
+}  // namespace

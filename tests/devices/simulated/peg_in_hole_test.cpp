@@ -50,8 +50,6 @@ Summary runTrials(Method method, double bore_diameter, double stiffness, double 
 
 class PegInHole : public testing::TestWithParam<Method> {};
 
-}  // namespace
-
 TEST_P(PegInHole, HandInsertsAtBothClearances) {
     // Truth: invariant of the task, judged by the closed form of the bore: 95 % of 20 mm, at rest, within 20 s.
     // PASSUNG_LONG=1: each bore with each spring, else one.
@@ -131,3 +129,5 @@ TEST(PegInHoleBlind, EveryPresetDeviceCanBeUsed) {
         EXPECT_GE(inserted, 4) << d.name;
     }
 }
+
+}  // namespace

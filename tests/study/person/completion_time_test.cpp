@@ -26,8 +26,6 @@ double meanTime(const SimulatedPerson& person, std::int64_t trials_before) {
     return sum / kDraws;
 }
 
-}  // namespace
-
 TEST(CompletionTime, HasTheMomentsOfItsExGaussian) {
     // Truth: closed form: mean 2.6 + 0.6, variance 0.25² + 0.6², third moment 2 · 0.6³. Standard errors of the mean and
     // of the variance of 20000 draws: 0.0046 and, with the exponential's kurtosis of 9, 0.0074; 4 of them are allowed.
@@ -62,3 +60,5 @@ TEST(CompletionTime, FollowsPacePracticeAndLapses) {
     absent.lapse_rate = 0.1;  // 4 standard deviations of 20000 draws of 2 s at 0.1: 0.017
     EXPECT_NEAR(meanTime(absent, 0), usual + 0.2, 0.017);
 }
+
+}  // namespace

@@ -18,8 +18,6 @@ std::vector<double> values(const SimulatedPerson& person) {
     return all;
 }
 
-}  // namespace
-
 TEST(SimulatedPerson, SameSeedIsTheSamePerson) {
     // Truth: invariant, bit for bit.
     for (std::uint64_t seed = 0; seed < 50; ++seed) EXPECT_EQ(values(drawPerson(seed)), values(drawPerson(seed)));
@@ -96,3 +94,5 @@ TEST(SimulatedPerson, PracticeMakesFasterByAnExponentialLaw) {
     EXPECT_DOUBLE_EQ(p.paceAfter(4), 1.2 / (1.0 + 0.5 / std::exp(1.0)));
     EXPECT_NEAR(p.paceAfter(200), 1.2, 1e-12);
 }
+
+}  // namespace
