@@ -100,9 +100,15 @@ void addCommand(NumberText& row, bool has, double command) {
 
 /// Which files have its columns.
 const char* whereExtra(store::Extra extra) {
-    return extra == store::Extra::Navigation
-               ? "only in files of conditions with effects.clutch, position_scale or drift"
-               : "only in files of conditions with effects.pick";
+    switch (extra) {
+        case store::Extra::Navigation:
+            return "only in files of conditions with effects.clutch, position_scale or drift";
+        case store::Extra::Bodies:
+            return "only in files of conditions with effects.pick";
+        case store::Extra::Effects:
+            return "only in files of conditions with effects.record";
+    }
+    return "";
 }
 
 std::vector<SampleColumn> makeSampleColumns(std::span<const store::Extra> extras) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
@@ -45,6 +46,10 @@ struct DeviceReading {
     double hand_energy_J = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// What may add to the wrench beside contact, in the order in which it does (core/tick/effect_sum.h).
+enum class WrenchEffect { Transients, Weight, Viscosity, Guidance };
+inline constexpr std::size_t kWrenchEffects = 4;
+
 inline constexpr std::int32_t kNoPart = -1, kPartNotTold = -2;
 
 /// One tick: its exact inputs, from which a replay reproduces everything else, and its outputs.
@@ -88,6 +93,11 @@ struct TickRecord {
     float navigation_scale = std::numeric_limits<float>::quiet_NaN();    // scene metres per device metre now
     std::array<float, 3> navigation_offset_m{};                          // scene axes, beside the registration
     std::array<float, 4> navigation_quaternion{1.0f, 0.0f, 0.0f, 0.0f};  // w, x, y, z: of the part in the handle
+    // Outputs of scenes that ask for them: which of WrenchEffect there are, a bit each, and what each added to the
+    // wrench on the hand, before its delay and limits: force and torque about the held part's origin, scene frame.
+    std::uint32_t effects = 0;
+    std::array<std::array<float, 6>, kWrenchEffects> effect_wrench{};  // [N], [N·m]
+    float guided = std::numeric_limits<float>::quiet_NaN();  // share of its way that the guide has gone, 0 … 1
     // measured, never compared by a replay
     std::int64_t duration_ns = 0;   // of the tick's computation, by the wall clock
     std::int64_t processor_ns = 0;  // of it, that the loop's thread spent on a processor

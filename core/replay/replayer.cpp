@@ -66,6 +66,12 @@ std::optional<Difference> compare(const TickRecord& recorded, const TickRecord& 
     comparison.field("navigation_clutched", recorded.navigation_clutched, replayed.navigation_clutched);
     comparison.field("navigation_offset_m", recorded.navigation_offset_m, replayed.navigation_offset_m);
     comparison.field("navigation_quaternion", recorded.navigation_quaternion, replayed.navigation_quaternion);
+    if (recorded.effects != 0) {
+        comparison.field("effects", recorded.effects, replayed.effects);
+        comparison.known("guided", recorded.guided, replayed.guided);
+        for (std::size_t i = 0; i < kWrenchEffects; ++i)
+            comparison.field("effect_wrench", recorded.effect_wrench[i], replayed.effect_wrench[i]);
+    }
     comparison.field("energy_J", recorded.energy_J, replayed.energy_J);
     comparison.field("quality", recorded.quality, replayed.quality);
     comparison.field("status", recorded.status, replayed.status);

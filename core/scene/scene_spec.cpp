@@ -58,6 +58,23 @@ public:
     std::vector<Error> errors;
 };
 
+void checkGuidance(const SceneSpec& scene, Checks& check) {
+    const Guidance& guidance = scene.effects.guidance;
+    check.require(guidance.share >= 0.0 && guidance.share <= 1.0, "effects: guidance: share", guidance.share,
+                  "must be 0 … 1");
+    check.positive("effects: guidance: speed", guidance.speed);
+    check.positive("effects: guidance: lead", guidance.lead);
+    check.notNegative("effects: guidance: stiffness", guidance.stiffness);
+    check.notNegative("effects: guidance: rotational stiffness", guidance.rotational_stiffness);
+    for (const Pose& X_WG : guidance.X_WG) check.finite("effects: guidance: way", X_WG);
+    const auto poses = static_cast<double>(guidance.X_WG.size());
+    check.require(guidance.X_WG.size() <= kMostWayPoses, "effects: guidance: way", poses, "must have at most 64 poses");
+    if (!(guidance.share > 0.0)) return;
+    check.require(!guidance.X_WG.empty(), "effects: guidance: way", poses, "must have a pose at least");
+    check.require(!scene.effects.picks(), "effects: guidance: share", guidance.share,
+                  "must be 0 where parts are picked up: its way is that of one part");
+}
+
 }  // namespace
 
 std::size_t SceneSpec::heldBy(std::size_t i) const {
@@ -167,6 +184,9 @@ std::vector<Error> SceneSpec::validate() const {
     check.positive("effects: transients: decay", transients.decay);
     check.require(effects.weight.gravity.allFinite(), "effects: weight: gravity", effects.weight.gravity.norm(),
                   "must be finite");
+    check.notNegative("effects: viscosity: damping", effects.viscosity.damping);
+    check.notNegative("effects: viscosity: rotational damping", effects.viscosity.rotational_damping);
+    checkGuidance(*this, check);
     check.notNegative("contact: proxy filter", contact.proxy_filter);
     for (std::size_t i = 0; i < handCount(); ++i) check.device(hand(i));
     return check.errors;

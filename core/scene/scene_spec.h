@@ -161,13 +161,36 @@ struct Navigation {
     bool any() const noexcept { return clutch.button > 0 || second_scale.button > 0 || drift.share > 0.0; }
 };
 
+/// A damper between the held part and the world: the part moves as in a viscous fluid.
+struct Viscosity {
+    double damping = 0.0;             // [N·s/m], ≥ 0; both 0: none
+    double rotational_damping = 0.0;  // [N·m·s/rad], ≥ 0
+
+    bool any() const noexcept { return damping > 0.0 || rotational_damping > 0.0; }
+};
+
+inline constexpr std::size_t kMostWayPoses = 64;
+
+/// Shared control: a guide goes along a way before the first hand and draws it after itself (core/tick/guidance.h).
+struct Guidance {
+    double share = 0.0;           // of the guide's wrench that the hand feels, 0 … 1; 0: none
+    std::vector<Pose> X_WG = {};  // the way on from where the held part starts, in the world; at most kMostWayPoses
+    double speed = 0.03;          // of the guide [m/s], > 0
+    double lead = 0.01;           // most that it goes before the hand, and that its spring is stretched [m], > 0
+    double stiffness = 500.0;     // of that spring [N/m], ≥ 0
+    double rotational_stiffness = 0.2;  // likewise [N·m/rad], ≥ 0
+};
+
 /// Effects beyond contact; what is 0 is not built.
 struct Effects {
     double passivity_damping = 0.0;  // most of the passivity controller's damper [N·s/m], ≥ 0; 0: no controller
     Transients transients;
     Weight weight;
+    Viscosity viscosity = {};
+    Guidance guidance = {};  // of the first hand
     Pick pick;
     Navigation navigation = {};  // of the first hand
+    bool record = false;         // what each of them adds to the wrench is told of every tick
 
     bool picks() const noexcept { return pick.reach > 0.0; }
 };

@@ -65,7 +65,7 @@ void notePushes(const HandModel& model, const HeldTarget& target, const Proxy& p
 }
 
 void sharePushes(const HandModel& model, const HandSample& hand, const Grip& grip, const HandWrench& wrench,
-                 Pushes& pushes) noexcept {
+                 const TransientsShare& transients, Pushes& pushes) noexcept {
     if (!hand.input_usable) clearPushes(pushes);
     double pressure = 0.0;
     Wrench rest = wrench.F_H_W;
@@ -74,6 +74,8 @@ void sharePushes(const HandModel& model, const HandSample& hand, const Grip& gri
         rest.force -= weight.force;
         rest.torque -= weight.torque;
     }
+    rest.force += transients.of_transients.force;
+    rest.torque += transients.of_transients.torque;
     for (const std::uint32_t i : pushes.pushes.held()) {
         const ObstaclePush& push = pushes.pushes[i];
         pressure += push.pressure;

@@ -37,9 +37,10 @@ void notePushes(const HandModel& model, const HeldTarget& target, const Proxy& p
                 const motion::ConstrainedMotion& motion, const motion::FrictionPatches& rubbing,
                 Pushes& pushes) noexcept;
 
-/// Stage, of scenes with obstacles: shares out what else is in F_H_W. After the wrench, before its delay.
+/// Stage, of scenes with obstacles: shares out what else is in F_H_W, and the vibration. After the wrench, before its
+/// delay.
 void sharePushes(const HandModel& model, const HandSample& hand, const Grip& grip, const HandWrench& wrench,
-                 Pushes& pushes) noexcept;
+                 const TransientsShare& transients, Pushes& pushes) noexcept;
 inline constexpr StageOf kContactShares{
     sharePushes,
     {.name = "contact shares",

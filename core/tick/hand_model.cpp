@@ -128,6 +128,15 @@ const char* contactInstead(const HandModel& model) noexcept {
                                                                    : "contact.method is god_object_heuristic";
 }
 
+std::uint32_t HandModel::wrenchEffects() const noexcept {
+    const auto bit = [](WrenchEffect effect, bool has) {
+        return static_cast<std::uint32_t>(has) << static_cast<unsigned>(effect);
+    };
+    return bit(WrenchEffect::Transients, hasTransients()) | bit(WrenchEffect::Weight, hasWeight()) |
+           bit(WrenchEffect::Viscosity, effects.viscosity.any()) |
+           bit(WrenchEffect::Guidance, effects.guidance.share > 0.0);
+}
+
 geometry::NearList nearListOf(const HandModel& model, double beyond) {
     std::vector<geometry::NearPart> parts;
     for (const Obstacle& obstacle : model.obstacles) {
@@ -158,6 +167,7 @@ HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size
     model.start_gate = device.start_gate;
     model.effects = spec.effects;
     model.effects.navigation = device.navigation;
+    if (hand > 0) model.effects.guidance = {};
     model.record_hand_depth = spec.record_hand_depth;
     model.display_wrench = spec.display_wrench;
     const double ratio = spec.contact.rotational_stiffness / spec.contact.stiffness;
@@ -176,6 +186,8 @@ HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size
     } else if (!(ratio > 0.0)) {
         model.metric_radius = kEmptyHandRadius;
     }
+    if (model.effects.guidance.share > 0.0)
+        model.way = GuideWay(model.X_WG_start, model.effects.guidance.X_WG, model.metric_radius);
     addStages(model, AllStages{});
     return model;
 }

@@ -8,6 +8,7 @@
 #include "core/base/types.h"
 #include "core/geometry/near_list.h"
 #include "core/motion/friction.h"
+#include "core/tick/guide_way.h"
 #include "core/tick/stage.h"
 #include "core/tick/world.h"
 
@@ -66,6 +67,7 @@ struct HandModel {
     Vec3 centre = Vec3::Zero();       // of its mass, part frame [m]
     ProxyMargins margins;
     scene::Effects effects;
+    GuideWay way;  // of its guidance
     bool record_hand_depth = true;
     bool display_wrench = true;
 
@@ -84,6 +86,9 @@ struct HandModel {
         return hasFieldProxy() && contact.method == method;
     }
     bool hasWeight() const noexcept { return !weight.isZero(0.0); }
+    bool hasTransients() const noexcept { return effects.transients.amplitude > 0.0 && hasObstacles(); }
+    /// Those of WrenchEffect that it has, a bit each.
+    std::uint32_t wrenchEffects() const noexcept;
     /// Its weight turns what hangs from the hand, or the hand itself.
     bool hangsTurned() const noexcept { return !hasProxy() || contact.rotational_stiffness > 0.0; }
     /// Its looks may stop and go on in the next tick (field_look.h).

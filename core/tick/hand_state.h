@@ -6,11 +6,13 @@
 #include "core/tick/closed_form_proxy.h"
 #include "core/tick/common_way.h"
 #include "core/tick/contact_energy.h"
+#include "core/tick/effect_sum.h"
 #include "core/tick/energy_account.h"
 #include "core/tick/followed_part.h"
 #include "core/tick/god_object.h"
 #include "core/tick/god_object_heuristic.h"
 #include "core/tick/grip.h"
+#include "core/tick/guidance.h"
 #include "core/tick/hand_model.h"
 #include "core/tick/input_guard.h"
 #include "core/tick/navigation.h"
@@ -26,6 +28,7 @@
 #include "core/tick/tick_frame.h"
 #include "core/tick/transients.h"
 #include "core/tick/virtual_coupling.h"
+#include "core/tick/viscosity.h"
 #include "core/tick/weight.h"
 
 namespace passung::tick {
@@ -33,28 +36,27 @@ namespace passung::tick {
 // The wholes, for those who walk the stages. No stage includes this header: from its parts no way leads to others.
 
 /// Every stage that a scene may need, in the order of the tick.
-using AllStages =
-    StageList<kInputGuard, kEnergyAccount, kNavigation, kStartGate, kWeight,  // where the hand is
-              kFreeHand,                                                      // no contact
-              kContactsAtHand, kPenaltyWrench,                                // direct penalty
-              kPenaltyTool, kProxySweep,                                      // tool, god object
-              kProxyCorrection, kProxyMotion,                                 // its heuristic
-              kProxyFilter, kCommonWay, kProxyRecord, kHandDepth,             // what follows them
-              kClosedFormProxy, kClosedFormFilter, kClosedFormCommonWay,      // god objects on closed forms
-              kClosedFormRecord, kClosedFormDepth,                            // what follows them
-              kSurfaceProxy, kSurfaceRecord, kSurfaceDepth,                   // the same on surfaces
-              kFollowedPart, kVirtualCoupling,                                // their wrench
-              kHeldPushes, kContactSign,
-              kTransients,                                                                         // effects
-              kContactShares, kWeightInHand, kClutchedWrench, kOutputDelay, kPassivityController,  // what goes out
-              kNoWrench, kOutputLimits>;
+using AllStages = StageList<kInputGuard, kEnergyAccount, kNavigation, kStartGate, kWeight,  // where the hand is
+                            kFreeHand,                                                      // no contact
+                            kContactsAtHand, kPenaltyWrench,                                // direct penalty
+                            kPenaltyTool, kProxySweep,                                      // tool, god object
+                            kProxyCorrection, kProxyMotion,                                 // its heuristic
+                            kProxyFilter, kCommonWay, kProxyRecord, kHandDepth,             // what follows them
+                            kClosedFormProxy, kClosedFormFilter, kClosedFormCommonWay,  // god objects on closed forms
+                            kClosedFormRecord, kClosedFormDepth,                        // what follows them
+                            kSurfaceProxy, kSurfaceRecord, kSurfaceDepth,               // the same on surfaces
+                            kFollowedPart, kVirtualCoupling,                            // their wrench
+                            kHeldPushes, kContactSign, kTransients, kContactShares, kWeightInHand, kViscosity,
+                            kGuidance, kEffectSum,                                // effects
+                            kClutchedWrench, kOutputDelay, kPassivityController,  // what goes out
+                            kNoWrench, kOutputLimits>;
 
 /// Everything of a hand that a tick carries to the next: the stages' own states. Sized by makeHandState; a tick never
 /// allocates.
-struct HandState
-    : Parts<ObstaclePoses, HeldTarget, Grip, FollowedPart, InputGuard, HandMapping, Engagement, EnergyAccounts, Proxy,
-            ProxyMotion, ProxyFilter, ClosedFormHold, FilteredHold, ClosedFormMemory, SurfaceFollow, HandVelocity,
-            ToolMotion, Stretch, ContactSign, Hang, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
+struct HandState : Parts<ObstaclePoses, HeldTarget, Grip, FollowedPart, InputGuard, HandMapping, Engagement,
+                         EnergyAccounts, Proxy, ProxyMotion, ProxyFilter, ClosedFormHold, FilteredHold,
+                         ClosedFormMemory, SurfaceFollow, HandVelocity, ToolMotion, Stretch, ContactSign, Hang, Ringing,
+                         Stirring, Guiding, Pushes, DelayLine, SentWrench, QueryMemory> {};
 
 /// What of it goes with the part: waits where nobody holds it.
 struct PartState : Parts<ObstaclePoses, HeldTarget, Proxy, ProxyMotion, ProxyFilter, ClosedFormHold, FilteredHold,

@@ -64,6 +64,7 @@ void forgetPast(HandState& hand) noexcept {
     static_cast<Stretch&>(hand) = {};
     static_cast<HandVelocity&>(hand) = {};
     static_cast<Ringing&>(hand) = {};
+    static_cast<Stirring&>(hand) = {};
     clearPushes(hand);
     for (Wrench& wrench : hand.delay_line) wrench = {};
     for (FewOfMany<Wrench>& line : hand.push_line) line.clear();

@@ -62,6 +62,13 @@ void store(std::array<float, 4>& into, const Quat& q) noexcept {
     into = {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z())};
 }
 
+void store(std::array<float, 6>& into, const Wrench& wrench) noexcept {
+    for (std::size_t i = 0; i < 3; ++i) {
+        into[i] = static_cast<float>(wrench.force[static_cast<int>(i)]);
+        into[i + 3] = static_cast<float>(wrench.torque[static_cast<int>(i)]);
+    }
+}
+
 /// The stages of a hand from number `begin` until one that does not sense, or all. Where it ended.
 std::size_t runStages(const HandModel& model, HandState& state, TickFrame& frame, std::size_t begin, bool sensing,
                       const StageWatch* watch) noexcept {
@@ -283,6 +290,13 @@ TickRecord makeRecord(std::int64_t tick, const DeviceReading& reading, const Tic
     record.navigation_scale = static_cast<float>(frame.scale);
     store(record.navigation_offset_m, frame.offset);
     store(record.navigation_quaternion, frame.turn);
+    record.effects = frame.effects;
+    if (frame.effects != 0) {
+        const std::array<const Wrench*, kWrenchEffects> added{&frame.of_transients, &frame.of_weight,
+                                                              &frame.of_viscosity, &frame.of_guidance};
+        for (std::size_t i = 0; i < kWrenchEffects; ++i) store(record.effect_wrench[i], *added[i]);
+        record.guided = static_cast<float>(frame.guided);
+    }
     return record;
 }
 

@@ -63,8 +63,29 @@ struct EnergyRecord {
     double energy = 0.0;  // EnergyAccount::taken_in [J]
 };
 
-/// The wrench on its way to the hand. Handed on: the method of contact makes it, effects add to it, the output stage
-/// leaves what the hand then feels.
+/// What each effect adds to the wrench on the hand, about the held part's origin, world axes (effect_sum.h). Owners:
+/// the effects.
+struct TransientsShare {
+    Wrench of_transients;
+};
+struct WeightShare {
+    Wrench of_weight;
+};
+struct ViscosityShare {
+    Wrench of_viscosity;
+};
+struct GuidanceShare {
+    Wrench of_guidance;
+    double guided = std::numeric_limits<double>::quiet_NaN();  // share of the way that the guide has gone
+};
+
+/// Owner: sum of effects.
+struct EffectRecord {
+    std::uint32_t effects = 0;  // HandModel::wrenchEffects, where records are to tell what they add
+};
+
+/// The wrench on its way to the hand. Handed on: the method of contact makes it, the sum of effects adds to it, the
+/// output stage leaves what the hand then feels.
 struct HandWrench {
     static constexpr bool kHandedOn = true;
     Wrench F_H_W;  // on the hand, about the held part's origin, world axes

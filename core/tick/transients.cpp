@@ -27,8 +27,9 @@ double impactSpeed(const HandModel& model, const Ringing& ringing, const HandSam
 
 }  // namespace
 
-void renderTransients(const HandModel& model, const HandSample& hand, const ContactRecord& contacts, Ringing& ringing,
-                      HandWrench& wrench) noexcept {
+void renderTransients(const HandModel& model, const HandSample& hand, const ContactRecord& contacts,
+                      const HandWrench& wrench, Ringing& ringing, TransientsShare& added) noexcept {
+    added.of_transients = Wrench{};
     if (!hand.input_usable) {
         ringing = Ringing{};
         return;
@@ -36,7 +37,7 @@ void renderTransients(const HandModel& model, const HandSample& hand, const Cont
     const scene::Transients& t = model.effects.transients;
     const double r = std::exp(-kTickSeconds / t.decay);
     const double phi = 2.0 * std::numbers::pi * t.frequency * kTickSeconds;
-    const Wrench contact = wrench.F_H_W;
+    const Wrench& contact = wrench.F_H_W;
     const Wrench now = ringing.next;
     ringing.next = sum(2.0 * r * std::cos(phi), now, -r * r, ringing.now);
     ringing.now = now;
@@ -53,7 +54,7 @@ void renderTransients(const HandModel& model, const HandSample& hand, const Cont
         ringing.X_WH_last = hand.X_WH;
         ringing.has_last = true;
     }
-    wrench.F_H_W = sum(1.0, contact, 1.0, now);
+    added.of_transients = now;
 }
 
 }  // namespace passung::tick

@@ -34,14 +34,14 @@ struct Ringing {
 ///
 /// Stage, only if the scene names the effect: after the contact's wrench, before its delay, so that the energy account,
 /// the passivity controller and the output's limits see it as part of the wrench.
-void renderTransients(const HandModel& model, const HandSample& hand, const ContactRecord& contacts, Ringing& ringing,
-                      HandWrench& wrench) noexcept;
+void renderTransients(const HandModel& model, const HandSample& hand, const ContactRecord& contacts,
+                      const HandWrench& wrench, Ringing& ringing, TransientsShare& added) noexcept;
 inline constexpr StageOf kTransients{
     renderTransients,
     {.name = "contact transients",
      .parameters = "effects.transients",
      .cost = "constant",
-     .needs = [](const HandModel& model) { return model.effects.transients.amplitude > 0.0 && model.hasObstacles(); },
+     .needs = [](const HandModel& model) { return model.hasTransients(); },
      .reason =
          [](const HandModel&) { return "effects.transients is set: a decaying vibration is added at every impact"; },
      .spared = [](const HandModel&) { return "effects.transients is not set"; }}};

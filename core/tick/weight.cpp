@@ -44,8 +44,9 @@ void hangPart(const HandModel& model, const HandSample& hand, const Grip& grip, 
 }
 
 void addWeight(const HandModel& model, const HandSample& hand, const Grip& grip, const Proxy& proxy, const Hang& hang,
-               Pushes& pushes, HandWrench& wrench, Report& report) noexcept {
+               const HandWrench& wrench, Pushes& pushes, WeightShare& added, Report& report) noexcept {
     report.status |= kWeighed;
+    added.of_weight = Wrench{};
     if (grip.shared) {  // the spring holds it
         if (hand.input_usable) pushes.pushes.back().wrench = borneWeight(model, hand, grip, wrench.F_H_W);
         return;
@@ -58,8 +59,7 @@ void addWeight(const HandModel& model, const HandSample& hand, const Grip& grip,
                         grip.leverOf(hand.X_WH.q).cross(weight.force);
     }
     pushes.pushes.back().wrench = hand.input_usable ? weight : Wrench{};
-    wrench.F_H_W.force += weight.force;
-    wrench.F_H_W.torque += weight.torque;
+    added.of_weight = weight;
 }
 
 }  // namespace passung::tick

@@ -90,9 +90,9 @@ inline constexpr StageOf kWeight{
      .spared = [](const HandModel&) { return "effects.weight is not set, or the held part has no density"; }}};
 
 /// After all that is told of contacts. Its share of the wrench is noted as a push of no obstacle, and the record
-/// tells that it is there (kWeighed).
+/// tells that it is there (kWeighed). Where two hands hold the part their springs do, and nothing is added.
 void addWeight(const HandModel& model, const HandSample& hand, const Grip& grip, const Proxy& proxy, const Hang& hang,
-               Pushes& pushes, HandWrench& wrench, Report& report) noexcept;
+               const HandWrench& wrench, Pushes& pushes, WeightShare& added, Report& report) noexcept;
 inline constexpr StageOf kWeightInHand{
     addWeight,
     {.name = "weight in the hand",

@@ -158,6 +158,8 @@ constexpr std::array kTables{
     TableInfo{"effects.transients", "`[effects.transients]`", ""},
     TableInfo{"effects.weight", "`[effects.weight]`", ""},
     TableInfo{"effects.pick", "`[effects.pick]`", ""},
+    TableInfo{"effects.viscosity", "`[effects.viscosity]`", ""},
+    TableInfo{"effects.guidance", "`[effects.guidance]`", ""},
     TableInfo{"effects.clutch", "`[effects.clutch]`", ""},
     TableInfo{"effects.position_scale", "`[effects.position_scale]`", ""},
     TableInfo{"effects.drift", "`[effects.drift]`", ""},

@@ -153,6 +153,19 @@ std::string otherHandsJson(const plan::Condition& condition) {
     return jsonList(hands);
 }
 
+std::string guidanceJson(const scene::Guidance& guidance) {
+    std::vector<std::string> way;
+    for (const Pose& X_WG : guidance.X_WG) way.push_back(poseJson(X_WG));
+    return JsonObject()
+        .number("share", guidance.share)
+        .json("way", jsonList(way))
+        .number("speed_m_per_s", guidance.speed)
+        .number("lead_m", guidance.lead)
+        .number("stiffness_N_per_m", guidance.stiffness)
+        .number("rotational_stiffness_Nm_per_rad", guidance.rotational_stiffness)
+        .str();
+}
+
 std::string effectsJson(const scene::Effects& effects) {
     JsonObject json;
     json.number("passivity_damping_Ns_per_m", effects.passivity_damping);
@@ -164,6 +177,13 @@ std::string effectsJson(const scene::Effects& effects) {
                                     .str());
     if (!effects.weight.gravity.isZero(0.0))
         json.json("weight", JsonObject().json("gravity_m_per_s2", jsonVector(effects.weight.gravity)).str());
+    if (effects.viscosity.any())
+        json.json("viscosity", JsonObject()
+                                   .number("damping_Ns_per_m", effects.viscosity.damping)
+                                   .number("rotational_damping_Nms_per_rad", effects.viscosity.rotational_damping)
+                                   .str());
+    if (effects.guidance.share > 0.0) json.json("guidance", guidanceJson(effects.guidance));
+    if (effects.record) json.boolean("record", true);
     if (effects.picks())
         json.json("pick", JsonObject()
                               .number("reach_m", effects.pick.reach)

@@ -49,6 +49,7 @@ public:
         const Node& pose = heldPose();
         reach(held_.X_WP, 0.0, pose, fmt::format("scene.part.{}.pose", held_.name), "the start");
         checkStart();
+        checkGuide();
         std::visit([this](const auto& form) { check(form); }, task_.form);
     }
 
@@ -217,6 +218,21 @@ private:
             !std::holds_alternative<plan::DiscriminationPairTask>(task_.form))
             fail(valueOf("leave_radius_mm"), "task.leave_radius_mm",
                  fmt::format("no way on {} leaves this sphere: at most {}", device_.name, millimetres(farthest)));
+    }
+
+    /// The guide leads nowhere that the hand cannot follow.
+    void checkGuide() {
+        if (!(scene_.effects.guidance.share > 0.0)) return;
+        const Node* effects = tables_.scene.find("effects");
+        const Node* guidance = effects != nullptr ? effects->find("guidance") : nullptr;
+        const Node* way = guidance != nullptr ? guidance->find("way") : nullptr;
+        if (way == nullptr) return;
+        constexpr const char* kKey = "scene.effects.guidance.way";
+        for (std::size_t i = 0; i < way->items.size(); ++i) {
+            const Pose& X_WG = scene_.effects.guidance.X_WG[i];
+            reach(X_WG, 0.0, way->items[i], kKey, "the guide's way");
+            handleTurns(X_WG.q.angularDistance(held_.X_WP.q), 0.0, way->items[i], kKey);
+        }
     }
 
     /// [m] from the start to the end of the task.

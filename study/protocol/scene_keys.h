@@ -164,6 +164,10 @@ inline constexpr std::array kSceneKeys{
 
     Key{"effects", "weight", Table, kAny, "", "(none)", "Weight of the held part, by its density_kg_per_m3: felt in the air, not where the part lies. The part hangs from the hand by its weight over the stiffness: `explain` says how far. It has no inertia."},
 
+    Key{"effects", "viscosity", Table, kAny, "", "(none)", "A damper on the held part's motion, in the air and in contact: it moves as in a fluid."},
+    Key{"effects", "guidance", Table, kAny, "", "(none)", "Shared control: a guide goes along a way before the first hand and draws it after itself by a spring, with the share that is asked for. It goes with one part: not with `effects.pick`; and it gives energy out: not with a passivity controller."},
+    Key{"effects", "record", Boolean, kAny, "", "false", "True: what each of transients, weight, viscosity and guidance adds to the wrench is recorded in every tick, and exported with the samples."},
+
     Key{"effects", "pick", Table, kAny, "", "(none)", "Hands pick parts up and let them go, by a button: a hand closes on the nearest pickable part, and the coupling holds it where the hand's point was."},
     Key{"effects", "clutch", Table, kAny, "", "(none)", "While its button is held the hand moves and the part stays, as a mouse that is lifted; let go, the part goes on from there without a jump. The wrench fades within 50 ms, at once where the hand yields to it, and a coupling relaxes, so that no energy is given out."},
     Key{"effects", "position_scale", Table, kAny, "", "(none)", "Another scale than the registration's while its button is held. Changes only while nothing touches: in contact a smaller scale would give back more energy than was put in."},
@@ -187,6 +191,16 @@ inline constexpr std::array kSceneKeys{
     Key{"effects.transients", "amplitude_Ns_per_m", Number, above(0), "", "!", "Force of the vibration per speed of the impact. The device's limits hold for contact and vibration together."},
     Key{"effects.transients", "frequency_hz", Number, aboveUpTo(0, 400), "", "!", "Frequency of the vibration."},
     Key{"effects.transients", "decay_ms", Number, aboveUpTo(0, 1000), "", "!", "Time in which the vibration falls to 37 %."},
+
+    Key{"effects.viscosity", "damping_Ns_per_m", Number, from(0, 100), "", "!", "Force per speed of the held part's origin. A device of mass m bears about m / (3 ms) without trembling."},
+    Key{"effects.viscosity", "rotational_damping_Nms_per_rad", Number, from(0, 1), "", "0", "Torque per speed of its turning."},
+
+    Key{"effects.guidance", "share", Number, from(0, 1), "", "!", "Share of the guide's force that the hand feels. 0: no guide at all, to the last bit; 1: the guide leads. Made to be a factor's key."},
+    Key{"effects.guidance", "way", Tables, kAny, "", "!", "Poses of the held part in the world, one after the other, at most 64: the way goes from where the part starts straight to the first, from there to the next, turning evenly. Each has a `position` and `rotation_deg`."},
+    Key{"effects.guidance", "speed_mm_per_s", Number, aboveUpTo(0, 1000), "", "30", "Speed of the guide along its way. It waits for a hand that stays behind, and never turns back."},
+    Key{"effects.guidance", "lead_mm", Number, aboveUpTo(0, 100), "", "10", "How far the guide goes before the hand; its spring pulls with no more than this times its stiffness."},
+    Key{"effects.guidance", "stiffness_N_per_m", Number, from(0, 10000), "", "500", "Stiffness of the guide's spring at a share of 1. With the coupling's it stays below the device's stable maximum."},
+    Key{"effects.guidance", "rotational_stiffness_Nm_per_rad", Number, from(0, 100), "", "0.2", "The same of turning."},
 
     Key{"effects.pick", "reach_mm", Number, aboveUpTo(0, 1000), "", "!", "Largest distance of a part's surface from the hand's point, the origin of what the registration puts into the handle."},
     Key{"effects.pick", "button", Integer, from(1, scene::kButtons), "", "1", "Number of the device's button, from 1. No other effect may have it."},

@@ -415,8 +415,50 @@ void readOtherHands(const TableReader& read, std::span<const std::string> names,
     }
 }
 
-scene::Effects readEffects(const TableReader& read, const DeviceDescription* device, Errors& errors) {
+scene::Guidance readGuidance(const TableReader& read, double units, Errors& errors) {
+    scene::Guidance guidance{.share = read.numberOr("share", 0.0),
+                             .speed = read.number("speed_mm_per_s"),
+                             .lead = read.number("lead_mm"),
+                             .stiffness = read.number("stiffness_N_per_m"),
+                             .rotational_stiffness = read.number("rotational_stiffness_Nm_per_rad")};
+    for (const Node& pose : read.items("way"))
+        guidance.X_WG.push_back(
+            readPose(TableReader(pose, {"pose"}, read.pathOf("way"), errors), "position", "rotation_deg", units));
+    if (guidance.X_WG.size() > scene::kMostWayPoses)
+        read.fail("way", fmt::format("must have at most {} poses", scene::kMostWayPoses));
+    else if (read.has("way") && guidance.X_WG.empty())
+        read.fail("way", "must have a pose at least");
+    return guidance;
+}
+
+/// A guide and what cannot be beside it.
+void checkGuidance(const TableReader& effects_table, const TableReader& contact_table, const DeviceDescription* device,
+                   const scene::SceneSpec& scene, Errors& errors) {
+    const Node* node = effects_table.node("guidance");
+    const scene::Guidance& guidance = scene.effects.guidance;
+    if (node == nullptr || !(guidance.share > 0.0)) return;
+    const TableReader read(*node, {"effects.guidance"}, effects_table.pathOf("guidance"), errors);
+    if (effects_table.has("pick"))
+        read.fail("share", "must be 0 with effects.pick: the guide's way is that of one part");
+    if (effects_table.has("passivity_controller"))
+        read.fail("share", "must be 0 with effects.passivity_controller, which would take back what the guide gives");
+    if (device == nullptr || contact_table.boolean("allow_unstable")) return;
+    const auto check = [&](const char* key, double coupling, double guide, double maximum) {
+        if (maximum > 0.0 && coupling + guidance.share * guide > maximum * (1.0 + 1e-9))
+            read.fail(key,
+                      fmt::format("with contact.{} = {:.6g} it is more than {} displays stably, {:.6g} in all; lower "
+                                  "either or the share, or contact.allow_unstable = true",
+                                  key, coupling, device->name, maximum));
+    };
+    const double scale = scene.hand(0).largestScale();
+    check("stiffness_N_per_m", scene.contact.stiffness, guidance.stiffness, device->stable_stiffness_N_per_m / scale);
+    check("rotational_stiffness_Nm_per_rad", scene.contact.rotational_stiffness, guidance.rotational_stiffness,
+          device->stable_rotational_stiffness_Nm_per_rad);
+}
+
+scene::Effects readEffects(const TableReader& read, const DeviceDescription* device, double units, Errors& errors) {
     scene::Effects effects;
+    effects.record = read.boolean("record");
     effects.navigation = readNavigation(read, device, errors);
     if (const Node* node = read.node("passivity_controller")) {
         const TableReader controller(*node, {"effects.passivity_controller"}, read.pathOf("passivity_controller"),
@@ -436,6 +478,14 @@ scene::Effects readEffects(const TableReader& read, const DeviceDescription* dev
         if (!(effects.weight.gravity.norm() <= kMostGravity))
             weight.fail("gravity_m_per_s2", fmt::format("must be no longer than {}", kMostGravity));
     }
+    if (const Node* node = read.node("viscosity")) {
+        const TableReader viscosity(*node, {"effects.viscosity"}, read.pathOf("viscosity"), errors);
+        effects.viscosity = {viscosity.numberOr("damping_Ns_per_m", 0.0),
+                             viscosity.number("rotational_damping_Nms_per_rad")};
+    }
+    if (const Node* node = read.node("guidance"))
+        effects.guidance =
+            readGuidance(TableReader(*node, {"effects.guidance"}, read.pathOf("guidance"), errors), units, errors);
     if (const Node* node = read.node("pick")) {
         const TableReader pick(*node, {"effects.pick"}, read.pathOf("pick"), errors);
         effects.pick = {.reach = pick.number("reach_mm"),
@@ -497,7 +547,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     const auto contact_table = open("contact");
     const auto registration_table = open("registration");
     content.scene.registration = readRegistration(registration_table, units);
-    content.scene.effects = readEffects(open("effects"), device, errors);
+    content.scene.effects = readEffects(open("effects"), device, units, errors);
     if (content.parts_sound) checkPicking(read, open("effects"), content.scene, errors);
     content.scene.contact = readContact(contact_table, device, device_table.has("preset"), content.scene.hand(0));
     readOtherHands(read, other_hands, units, reading.devices, device_table, contact_table, content, errors);
@@ -512,6 +562,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     const auto only_device = [&] { return errors.size() == before + of_device; };
     if (only_device()) checkSizes(contact_table, content.scene, geometries);
     checkStability(device_table, contact_table, device, content.scene.contact, content.scene.hand(0));
+    checkGuidance(open("effects"), contact_table, device, content.scene, errors);
     content.scene.start_gate = readStartGate(open("start_gate"), units, beginsEmpty(content.scene, 0), errors);
     // What only the model itself can judge has no line of its own.
     if (only_device())

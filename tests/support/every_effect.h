@@ -11,12 +11,19 @@ inline scene::Effects everyEffect() {
         .passivity_damping = 5.0,
         .transients = {.amplitude = 5.0, .frequency = 150.0, .decay = 0.01},
         .weight = {.gravity = Vec3(0.0, 0.0, -scene::kStandardGravity)},
+        .viscosity = {.damping = 2.0, .rotational_damping = 1e-3},
+        .guidance = {.share = 0.5,
+                     .X_WG = {{rotationFromVector(Vec3(0.2, 0, 0)), Vec3(0.004, 0, 0.008)},
+                              {Quat::Identity(), Vec3(-0.004, 0.002, 0.012)}},
+                     .lead = 0.003},
         .pick = {},  // no stage: it changes what a hand holds (pick_test.cpp)
         .navigation = {.clutch = {.button = 2},
                        .second_scale = {.button = 3, .scale = 0.5},
                        .drift = {.share = 0.1, .radius = 0.05}},
+        .record = true,
     };
-    [[maybe_unused]] const auto& [passivity_damping, transients, weight, pick, navigation] = effects;
+    [[maybe_unused]] const auto& [passivity_damping, transients, weight, viscosity, guidance, pick, navigation,
+                                  record] = effects;
     return effects;
 }
 

@@ -140,6 +140,34 @@ Layout makeBodiesLayout() {
     return layout;
 }
 
+Layout makeEffectsLayout() {
+    struct Named {
+        const char *key, *what;
+    };
+    constexpr std::array<Named, kWrenchEffects> kNamed{{{"transients", "the vibration after impacts"},
+                                                        {"weight", "the held part's weight"},
+                                                        {"viscosity", "the viscosity"},
+                                                        {"guidance", "the guide"}}};
+    Layout layout;
+    layout.add("effects", "uint32", "1",
+               "Effects that the scene has: bit 0 transients, bit 1 weight, bit 2 viscosity, bit 3 guidance",
+               offsetof(TickRecord, effects));
+    layout.add("guided", "float32", "1",
+               "Share of its way that the guide has gone, 0 to 1; not a number without a guide",
+               offsetof(TickRecord, guided));
+    for (std::size_t i = 0; i < kWrenchEffects; ++i) {
+        const auto& [key, what] = kNamed[i];
+        const std::size_t at = offsetof(TickRecord, effect_wrench) + i * sizeof(TickRecord::effect_wrench[0]);
+        layout.addAxes(std::string(key) + "_force_", "xyz", "_N", "float32", "N",
+                       std::string("Force that ") + what + " adds, before the device's delay and limits, scene axes",
+                       at);
+        layout.addAxes(std::string(key) + "_torque_", "xyz", "_Nm", "float32", "N·m",
+                       std::string("Torque that ") + what + " adds, about the held part's origin, likewise",
+                       at + 3 * sizeof(float));
+    }
+    return layout;
+}
+
 const Layout& tickLayout() {
     static const Layout layout = makeTickLayout();
     return layout;
@@ -151,7 +179,7 @@ const Layout& timingLayout() {
 }
 
 const Layout& extraLayout(Extra extra) {
-    static const std::array layouts{makeNavigationLayout(), makeBodiesLayout()};
+    static const std::array layouts{makeNavigationLayout(), makeBodiesLayout(), makeEffectsLayout()};
     return layouts[static_cast<std::size_t>(extra)];
 }
 
@@ -248,7 +276,7 @@ void decode(const Layout& layout, const Chunk& chunk, std::span<TickRecord> reco
 namespace {
 
 constexpr std::string_view kOtherHand = "tick_hand_";
-constexpr std::array<std::string_view, kExtras.size()> kExtraNames{"navigation", "bodies"};
+constexpr std::array<std::string_view, kExtras.size()> kExtraNames{"navigation", "bodies", "effects"};
 
 /// Fills what `chunk` holds of `records` (ascending ticks).
 Result<Done> decodeBeside(const Layout& layout, const Chunk& chunk, std::span<TickRecord> records) {
@@ -286,7 +314,15 @@ std::optional<Extra> extraNamed(std::string_view stream) {
 
 bool haveExtra(Extra extra, std::span<const TickRecord> records) {
     return std::any_of(records.begin(), records.end(), [extra](const TickRecord& record) {
-        return extra == Extra::Navigation ? !std::isnan(record.navigation_scale) : record.held != kPartNotTold;
+        switch (extra) {
+            case Extra::Navigation:
+                return !std::isnan(record.navigation_scale);
+            case Extra::Bodies:
+                return record.held != kPartNotTold;
+            case Extra::Effects:
+                return record.effects != 0;
+        }
+        return false;
     });
 }
 

@@ -41,9 +41,9 @@ const std::vector<Channel>& tickChannels();
 const std::vector<Channel>& timingChannels();
 
 /// Streams that a hand has beside its ticks, only of attempts whose scene calls for them: "navigation"
-/// (core/tick/navigation.h) and "bodies" (core/tick/pick.h).
-enum class Extra { Navigation, Bodies };
-inline constexpr std::array kExtras{Extra::Navigation, Extra::Bodies};
+/// (core/tick/navigation.h), "bodies" (core/tick/pick.h) and "effects" (core/tick/effect_sum.h).
+enum class Extra { Navigation, Bodies, Effects };
+inline constexpr std::array kExtras{Extra::Navigation, Extra::Bodies, Extra::Effects};
 const std::vector<Channel>& extraChannels(Extra extra);
 /// Name of such a stream of a hand: "navigation" of the first, "navigation_hand_2" and so on of others.
 std::string extraStreamName(Extra extra, std::size_t hand);

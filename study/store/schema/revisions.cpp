@@ -249,6 +249,11 @@ CREATE TABLE assembly_step(
     PRIMARY KEY(attempt_id, step)) STRICT, WITHOUT ROWID;
 )sql";
 
+constexpr const char* kRevision21 = R"sql(
+-- Streams "effects", "effects_hand_2" and so on hold what each effect added to the wrench in each tick: in segments with
+-- a scene that asks for it.
+)sql";
+
 const std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kFirstSchema, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -279,6 +284,8 @@ const std::array kRevisions = {
     Revision{19, "Clutch, scale and drift of each tick", kRevision19, 19},
     // As for the streams of navigation.
     Revision{20, "Parts in hands, steps of assemblies", kRevision20, 20},
+    // Likewise.
+    Revision{21, "What each effect added to the wrench", kRevision21, 21},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

@@ -59,6 +59,9 @@ constexpr std::uint64_t kWeight = 0x3be8ace262a36b3fu;
 /// The same with navigation, whose buttons are held now and then.
 constexpr std::uint64_t kNavigation = 0x1210f7c4ccd5dadcu;
 
+/// The same with viscosity and a guide.
+constexpr std::uint64_t kGuidance = 0x0e5a121e84a9b78bu;
+
 constexpr const char* kParts = R"(
 [[part]]
 name = "plate"
@@ -150,6 +153,9 @@ TEST(Numerics, EveryOutputBitOfFixedScenesIsThatOfItsNumber) {
     EXPECT_EQ(hex(hashOf(spec)), hex(kWeight)) << "weight" << advice;
     spec.effects.navigation = {.clutch = {2, true}, .second_scale = {3, 0.4}, .drift = {0.2, 0.02}};
     EXPECT_EQ(hex(hashOf(spec)), hex(kNavigation)) << "navigation" << advice;
+    spec.effects.viscosity = {2.0, 1e-3};
+    spec.effects.guidance = {.share = 0.5, .X_WG = {Pose{}}, .rotational_stiffness = 2.0};
+    EXPECT_EQ(hex(hashOf(spec)), hex(kGuidance)) << "viscosity and guidance" << advice;
 }
 
 }  // namespace

@@ -70,6 +70,7 @@ scene::SceneSpec inTwoHands() {
     auto spec = besideAnother(boxOverPlate(scene::ContactMethod::GodObject));
     spec.parts.front().pickable = spec.parts.back().pickable = true;
     spec.effects.pick.reach = 0.01;
+    spec.effects.guidance.share = 0.0;  // its way is that of one part
     return spec;
 }
 

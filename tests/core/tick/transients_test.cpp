@@ -298,8 +298,9 @@ TEST(Transients, AreNoStageOfASceneWithoutThem) {
     EXPECT_EQ(std::count(names.begin(), names.end(), "contact transients"), 0);
     names = stagesOf(withTransients(spec));
     ASSERT_GE(names.size(), 5u);
-    EXPECT_EQ(std::vector<std::string>(names.end() - 4, names.end()),
-              (std::vector<std::string>{"contact transients", "contact shares", "output delay", "output limits"}));
+    EXPECT_EQ(std::vector<std::string>(names.end() - 5, names.end()),
+              (std::vector<std::string>{"contact transients", "contact shares", "sum of effects", "output delay",
+                                        "output limits"}));
 }
 
 }  // namespace

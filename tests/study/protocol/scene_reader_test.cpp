@@ -489,6 +489,70 @@ TEST(SceneReader, RefusesWhatTheStableMaximumWasNotFoundFor) {
     EXPECT_NE(errorsOf(arm + "[contact]\nallow_unstable = false\nstiffness_N_per_m = 9000\n"), "");
 }
 
+TEST(SceneReader, ReadsAGuideAndItsWayInTheFilesUnit) {
+    // Truth: closed form: millimetres to metres, degrees to a quaternion, each number another one; defaults of KEYS.md.
+    const std::string way =
+        "way = [{ position = [0, 0, 30] }, { position = [1, 2, -20], rotation_deg = [0, 0, 90] }]\n";
+    EXPECT_EQ(read(kParts)->effects.guidance.share, 0.0);
+    const auto scene = read(kParts +
+                            "[effects]\nrecord = true\n[effects.guidance]\nshare = 0.4\nspeed_mm_per_s = 20\n"
+                            "lead_mm = 7\nstiffness_N_per_m = 300\nrotational_stiffness_Nm_per_rad = 0.5\n" +
+                            way);
+    ASSERT_TRUE(scene) << toString(scene.errors().front());
+    const scene::Guidance& guidance = scene->effects.guidance;
+    EXPECT_TRUE(scene->effects.record);
+    EXPECT_EQ(guidance.share, 0.4);
+    EXPECT_DOUBLE_EQ(guidance.speed, 0.02);
+    EXPECT_DOUBLE_EQ(guidance.lead, 0.007);
+    EXPECT_EQ(guidance.stiffness, 300.0);
+    EXPECT_EQ(guidance.rotational_stiffness, 0.5);
+    ASSERT_EQ(guidance.X_WG.size(), 2u);
+    EXPECT_LT((guidance.X_WG[1].p - Vec3(0.001, 0.002, -0.02)).norm(), 1e-15);
+    EXPECT_LT((guidance.X_WG[1].q * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-12);
+    const auto defaults = read(kParts + "[effects.guidance]\nshare = 1\n" + way);
+    ASSERT_TRUE(defaults);
+    EXPECT_DOUBLE_EQ(defaults->effects.guidance.speed, 0.03);
+    EXPECT_DOUBLE_EQ(defaults->effects.guidance.lead, 0.01);
+    EXPECT_EQ(defaults->effects.guidance.stiffness, 500.0);
+    EXPECT_EQ(defaults->effects.guidance.rotational_stiffness, 0.2);
+    EXPECT_FALSE(defaults->effects.record);
+}
+
+TEST(SceneReader, RefusesAGuideBesideWhatItConflictsWith) {
+    // Truth: the rules of KEYS.md. A share of 0 is no guide.
+    const auto with = [](const std::string& share, const std::string& more) {
+        return kParts + more + "[effects.guidance]\nway = [{ position = [0, 0, 30] }]\nshare = " + share + "\n";
+    };
+    const std::string passivity = "[effects.passivity_controller]\nmax_damping_Ns_per_m = 20\n";
+    EXPECT_EQ(errorsOf(with("0.5", "")), "");
+    EXPECT_NE(errorsOf(with("0.5", passivity)).find("effects.guidance.share: 0.5: must be 0 with effects.passivity"),
+              std::string::npos);
+    EXPECT_EQ(errorsOf(with("0", passivity)), "");
+    EXPECT_NE(errorsOf(with("1.5", "")).find("effects.guidance.share: 1.5: must be from 0 to 1"), std::string::npos);
+    EXPECT_NE(errorsOf(kParts + "[effects.guidance]\nshare = 1\n").find("effects.guidance.way: required"),
+              std::string::npos);
+    EXPECT_NE(errorsOf(kParts + "[effects.guidance]\nshare = 1\nway = []\n").find("effects.guidance.way"),
+              std::string::npos);
+    // Truth: the device's stable maximum, 4000 N/m of "arm": 3700 + 0.5 * 500 are within it, 3700 + 500 are not.
+    const std::string arm =
+        "[device]\npreset = \"arm\"\n[contact]\nstiffness_N_per_m = 3700\n"
+        "rotational_stiffness_Nm_per_rad = 0\n";
+    const std::string no_turn = "rotational_stiffness_Nm_per_rad = 0\n";
+    EXPECT_EQ(errorsOf(with("0.5", arm) + no_turn), "");
+    EXPECT_NE(errorsOf(with("1", arm) + no_turn).find("effects.guidance.stiffness_N_per_m"), std::string::npos);
+}
+
+TEST(SceneReader, ReadsViscosity) {
+    // Truth: the rules of KEYS.md.
+    const auto scene = read(kParts + "[effects.viscosity]\ndamping_Ns_per_m = 3\n");
+    ASSERT_TRUE(scene);
+    EXPECT_EQ(scene->effects.viscosity.damping, 3.0);
+    EXPECT_EQ(scene->effects.viscosity.rotational_damping, 0.0);
+    EXPECT_FALSE(read(kParts)->effects.viscosity.any());
+    EXPECT_NE(errorsOf(kParts + "[effects.viscosity]\n").find("effects.viscosity.damping_Ns_per_m: required"),
+              std::string::npos);
+}
+
 TEST(SceneReader, BuildsTransientsOnlyIfTheyAreNamedAndComplete) {
     // Truth: closed form: 40 ms are 0.04 s; without the table there are none.
     EXPECT_EQ(read(kParts)->effects.transients.amplitude, 0.0);

@@ -92,6 +92,18 @@ inline std::vector<TickRecord> withBodies(std::uint64_t seed, std::vector<TickRe
     return records;
 }
 
+/// The same of a scene that asks what its effects add.
+inline std::vector<TickRecord> withEffects(std::uint64_t seed, std::vector<TickRecord> records) {
+    Random random(seed);
+    for (TickRecord& r : records) {
+        r.effects = 1u + static_cast<std::uint32_t>(random.below(15));
+        r.guided = static_cast<float>(random.uniform());
+        for (auto& wrench : r.effect_wrench)
+            for (float& value : wrench) value = static_cast<float>(random.normal());
+    }
+    return records;
+}
+
 /// The same of a scene with navigation.
 inline std::vector<TickRecord> withNavigation(std::uint64_t seed, std::vector<TickRecord> records) {
     Random random(seed);
@@ -117,7 +129,8 @@ inline bool sameStoredBits(const TickRecord& a, const TickRecord& b) {
            same(a.energy_J, b.energy_J) && same(a.hand_energy_J, b.hand_energy_J) &&
            same(a.proxy_gap_m, b.proxy_gap_m) && a.navigation_clutched == b.navigation_clutched &&
            same(a.navigation_scale, b.navigation_scale) && same(a.navigation_offset_m, b.navigation_offset_m) &&
-           same(a.navigation_quaternion, b.navigation_quaternion) && a.held == b.held && a.steps_done == b.steps_done;
+           same(a.navigation_quaternion, b.navigation_quaternion) && a.held == b.held && a.steps_done == b.steps_done &&
+           a.effects == b.effects && same(a.guided, b.guided) && same(a.effect_wrench, b.effect_wrench);
 }
 
 inline bool sameStoredBits(const std::vector<TickRecord>& a, const std::vector<TickRecord>& b) {

@@ -2259,6 +2259,30 @@
         <translation>effects.weight ist gesetzt: Was kein Kontakt trägt, wird gefühlt</translation>
     </message>
     <message>
+        <source>viscosity</source>
+        <translation>Viskosität</translation>
+    </message>
+    <message>
+        <source>effects.viscosity is set: a damper resists the held part&apos;s motion</source>
+        <translation>effects.viscosity ist gesetzt: Ein Dämpfer bremst die Bewegung des gehaltenen Teils</translation>
+    </message>
+    <message>
+        <source>guidance</source>
+        <translation>Führung</translation>
+    </message>
+    <message>
+        <source>effects.guidance has a share above 0: a guide draws the hand along</source>
+        <translation>effects.guidance hat einen Anteil über 0: Ein Führer zieht die Hand mit</translation>
+    </message>
+    <message>
+        <source>sum of effects</source>
+        <translation>Summe der Effekte</translation>
+    </message>
+    <message>
+        <source>an effect adds to the wrench</source>
+        <translation>Ein Effekt kommt zu Kraft und Drehmoment hinzu</translation>
+    </message>
+    <message>
         <source>contact shares</source>
         <translation>Kontaktanteile</translation>
     </message>

@@ -61,7 +61,8 @@ TEST(SampleCodec, ReadsTimesFromBeforeTheProcessorsWasMeasured) {
 TEST(SampleCodec, KeepsWhatFewScenesHaveOutOfTheTicksAndInStreamsOfItsOwn) {
     // Truth: invariant: decoding inverts encoding, by tick; ticks of other scenes have nothing to keep.
     const auto plain = fake::makeRecords(1, 50);
-    const std::array of_extra{fake::withNavigation(2, plain), fake::withBodies(2, plain)};
+    const std::array of_extra{fake::withNavigation(2, plain), fake::withBodies(2, plain), fake::withEffects(2, plain)};
+    static_assert(of_extra.size() == kExtras.size());
     for (const Extra extra : kExtras) {
         const auto& records = of_extra[static_cast<std::size_t>(extra)];
         EXPECT_FALSE(haveExtra(extra, plain));
@@ -80,6 +81,7 @@ TEST(SampleCodec, KeepsWhatFewScenesHaveOutOfTheTicksAndInStreamsOfItsOwn) {
     }
     EXPECT_EQ(extraStreamName(Extra::Navigation, 1), "navigation_hand_2");
     EXPECT_EQ(extraStreamName(Extra::Bodies, 0), "bodies");
+    EXPECT_EQ(extraStreamName(Extra::Effects, 2), "effects_hand_3");
     EXPECT_FALSE(extraNamed("tick_timing") || extraNamed("tick_hand_2"));
 }
 
