@@ -67,6 +67,7 @@ struct VisibleTask {
     double insertion_depth = 0.020;  // [m], > 0
     std::variant<std::monostate, CompareGoal, PlaceGoal, FollowGoal, HoldGoal, AssembleGoal> goal = {};
     std::optional<std::size_t> target_hand = {};  // that holds the target, which then moves; none: it rests
+    bool blind = false;                           // nothing is drawn once the trial has begun
     bool round = true;                            // seen: turned about its z axis the held part looks the same
 };
 

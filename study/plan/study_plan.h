@@ -72,6 +72,7 @@ struct Condition {
     std::optional<scene::SceneSpec> comparison;  // of a discrimination_pair: the other interval's scene
     std::optional<StaircaseLevel> stimulus;      // none: no staircase chose anything in it
     ShownPose shown = ShownPose::Proxy;
+    bool shows_scene = true;  // false: nothing of it is drawn from the trial's start on
     ShownResult result = ShownResult::None;
     Cues cues;
     TimedBy timed_by = TimedBy::Program;

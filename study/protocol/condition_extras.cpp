@@ -20,6 +20,7 @@ void readFeedback(const Node& table, plan::Condition& condition, Errors& errors)
     const TableReader read(table, {"feedback"}, "feedback", errors);
     condition.scene.display_wrench = read.boolean("kinesthetic");
     condition.shown = read.text("shown_pose") == "device" ? plan::ShownPose::Device : plan::ShownPose::Proxy;
+    condition.shows_scene = read.boolean("scene");
     for (const plan::ShownResult result : {plan::ShownResult::Outcome, plan::ShownResult::Time})
         if (read.text("result") == plan::shownResultName(result)) condition.result = result;
     plan::Cues& cues = condition.cues;
@@ -39,6 +40,8 @@ void readFeedback(const Node& table, plan::Condition& condition, Errors& errors)
         else
             *cue = true;
     }
+    if (!condition.shows_scene && cues.visual)
+        read.fail("scene", "must be true with the cue \"visual\": it colours the held part, which is not drawn");
 }
 
 void readSecondary(const Node& table, plan::Condition& condition, Errors& errors) {

@@ -20,6 +20,7 @@ void dropDeadFeedback(plan::Condition& condition) {
     plan::Cues& cues = condition.cues;
     if (!isVirtual(condition)) cues = {.masking_noise = cues.masking_noise};
     if (!isVirtual(condition) || drawsBothAlike(condition)) condition.shown = plan::ShownPose::Proxy;
+    if (!isVirtual(condition)) condition.shows_scene = true;
     const plan::Cues unsaid;
     if (!cues.visual && !cues.vibrotactile) cues.full_depth = unsaid.full_depth;
     if (!cues.audio) cues.full_speed = unsaid.full_speed;
@@ -59,7 +60,7 @@ std::string whatReaches(plan::Condition condition) {
 std::string deadFeedback(const plan::Condition& a, const plan::Condition& b) {
     const auto differ = [&](auto plan::Cues::*member) { return a.cues.*member != b.cues.*member; };
     const bool cues = differ(&plan::Cues::visual) || differ(&plan::Cues::vibrotactile) || differ(&plan::Cues::audio);
-    if (!isVirtual(a) && (cues || a.shown != b.shown))
+    if (!isVirtual(a) && (cues || a.shown != b.shown || a.shows_scene != b.shows_scene))
         return "feedback has no effect in a trial that the program does not time: nothing is drawn, the device rests";
     if (a.shown != b.shown)
         return "feedback.shown_pose has no effect where contact.method = \"penalty\" renders at the hand: the proxy is "

@@ -192,7 +192,7 @@ void checkComparisons(const plan::StudyPlan& plan, const Node& task, Errors& err
         return fail("is the same as its reference in every pair: there is nothing to tell apart");
     for (const plan::Condition* pair : pairs)
         if (!pair->scene.display_wrench && !isShownOrHeard(pair->cues) &&
-            looksTheSame(pair->scene, *pair->comparison, pair->shown))
+            (!pair->shows_scene || looksTheSame(pair->scene, *pair->comparison, pair->shown)))
             return fail(
                 fmt::format("differs in nothing that is felt, seen or heard with feedback.kinesthetic = false "
                             "and no cue; condition: {}",

@@ -62,6 +62,7 @@ constexpr std::array kStudyKeys{
     Key{"feedback", "cue_full_depth_mm", Number, above(0), "", "2", "Depth at the hand's pose at which the visual and the vibrotactile command are 1."},
     Key{"feedback", "cue_full_speed_mm_per_s", Number, above(0), "", "100", "Speed of the hand at an impact at which the audio command is 1."},
     Key{"feedback", "cue_sound_decay_ms", Number, aboveUpTo(0, 10000), "", "50", "Time in which the audio command falls to 37 % after an impact."},
+    Key{"feedback", "scene", Boolean, kAny, "", "true", "False: nothing of the scene is drawn from the trial's start on; the start pose is still shown. Simulated people then hold the part and give way to what they feel."},
     Key{"feedback", "shown_pose", Choice, kAny, "proxy|device", "proxy", "Pose at which the held part is drawn: that of the proxy, which stays outside, or that of the device."},
 
     Key{"block", "name", Name, kAny, "", "!", "Name of the block, unique."},
@@ -157,9 +158,9 @@ constexpr std::array kTables{
     TableInfo{"effects.passivity_controller", "`[effects.passivity_controller]`", ""},
     TableInfo{"effects.transients", "`[effects.transients]`", ""},
     TableInfo{"effects.weight", "`[effects.weight]`", ""},
-    TableInfo{"effects.pick", "`[effects.pick]`", ""},
     TableInfo{"effects.viscosity", "`[effects.viscosity]`", ""},
     TableInfo{"effects.guidance", "`[effects.guidance]`", ""},
+    TableInfo{"effects.pick", "`[effects.pick]`", ""},
     TableInfo{"effects.clutch", "`[effects.clutch]`", ""},
     TableInfo{"effects.position_scale", "`[effects.position_scale]`", ""},
     TableInfo{"effects.drift", "`[effects.drift]`", ""},

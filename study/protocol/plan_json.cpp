@@ -465,6 +465,7 @@ std::string paramsJson(const plan::Condition& condition) {
                                     .str());
     }
     if (!scene.display_wrench) json.boolean("kinesthetic", false);
+    if (!condition.shows_scene) json.boolean("scene", false);
     if (condition.timed_by != plan::TimedBy::Program) json.text("timed_by", plan::timedByName(condition.timed_by));
     if (condition.secondary.any()) json.json("secondary", secondaryJson(condition.secondary));
     return json.str();

@@ -88,6 +88,7 @@ simulated::VisibleTask assemblyTask(const plan::Condition& condition, const plan
     goal.hand = hand;
     goal.on_press = pick.on_press;
     simulated::VisibleTask task;
+    task.blind = !condition.shows_scene;
     task.X_WHeldStart = plan::startPose(condition.scene, hand);
     task.goal = std::move(goal);
     return task;
@@ -99,6 +100,7 @@ simulated::VisibleTask visibleTask(const plan::Condition& condition, BuiltParts 
     if (const auto* assembly = std::get_if<plan::AssemblyTask>(&condition.task.form))
         return assemblyTask(condition, *assembly, 0, parts);
     simulated::VisibleTask task;
+    task.blind = !condition.shows_scene;
     if (const auto* held = plan::heldPart(condition.scene)) {
         task.X_WHeldStart = shownPose(*held);
         task.round = looksRound(*held);

@@ -168,6 +168,7 @@ Result<std::shared_ptr<const DrawnScene>> SceneArtist::draw(const plan::Conditio
     auto scene = std::make_shared<DrawnScene>();
     scene->appearance = appearance;
     scene->shown = condition.shown;
+    scene->hidden_in_trial = !condition.shows_scene;
     scene->cues = condition.cues;
     scene->held = DrawnScene::kNothing;
     geometry::Bounds bounds;

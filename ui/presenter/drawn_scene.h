@@ -53,6 +53,7 @@ struct DrawnScene {
     std::optional<DrawnPicking> picking;  // none: every hand keeps what it holds
     Vec3 held_offset = Vec3::Zero();      // drawn so far from where it is, world axes [m]
     plan::ShownPose shown = plan::ShownPose::Proxy;
+    bool hidden_in_trial = false;  // not drawn to the participant from the trial's start on
     plan::Cues cues;
     plan::View appearance;
     std::vector<Mark> marks;

@@ -106,7 +106,9 @@ ParticipantView participantView(const Run& run, bool feels) {
     if (view.screen == ParticipantScreen::ToStart || view.screen == ParticipantScreen::Task) lookIntoTrial(run, view);
     const auto& scene = run.scene();
     if (!scene || !hasScene(view.screen)) return view;
-    view.scene = view.screen != ParticipantScreen::Wait || view.brief.timed_by == plan::TimedBy::Program;
+    const bool in_trial = view.screen == ParticipantScreen::Task || view.screen == ParticipantScreen::Question;
+    const bool hidden = scene->hidden_in_trial && in_trial;
+    view.scene = !hidden && (view.screen != ParticipantScreen::Wait || view.brief.timed_by == plan::TimedBy::Program);
     view.X_WStart = scene->startPose();
     view.X_WHeld = view.X_WStart;
     view.start_mark = view.screen == ParticipantScreen::ToStart;

@@ -31,8 +31,9 @@ protected:
         design::PlannedTrial trial;
         run_.take(SessionBegun{"P001", {trial, trial}});
     }
-    void beginTrial(const TrialBrief& brief) {
+    void beginTrial(const TrialBrief& brief, bool hidden = false) {
         auto scene = std::make_shared<DrawnScene>();
+        scene->hidden_in_trial = hidden;
         scene->parts.resize(1);
         scene->parts[0].mesh = std::make_shared<const ShadedMesh>();
         run_.take(AttemptPrepared{0, "a", scene, brief});
@@ -122,6 +123,32 @@ TEST_F(Participant, WaitsForTheExperimentersClockWithoutAScene) {
     tick(50, true);
     EXPECT_TRUE(view().begun);
     EXPECT_NEAR(run_.view().trial_s, 0.05, 1e-9);
+}
+
+TEST_F(Participant, SeesNoSceneInATrialThatHidesItAndSeesItAgainAfterwards) {
+    // Truth: the rule of feedback.scene: the start pose is shown, what comes after it is not; the next trial's is.
+    begin();
+    for (int round = 0; round < 3; ++round) {
+        beginTrial({.kind = Kind::Pair, .question = "Which was stiffer?"}, true);
+        tick(5, false);
+        EXPECT_EQ(view().screen, ParticipantScreen::ToStart);
+        EXPECT_TRUE(view().scene);
+        tick(5, true);
+        EXPECT_EQ(view().screen, ParticipantScreen::Task);
+        EXPECT_FALSE(view().scene);
+        tick(5, false);
+        EXPECT_TRUE(view().scene) << "to the start of the second interval";
+        tick(5, true);
+        EXPECT_FALSE(view().scene);
+        tick(5, false);
+        EXPECT_EQ(view().screen, ParticipantScreen::Question);
+        EXPECT_FALSE(view().scene);
+        run_.take(AttemptEnded{0, measures::Outcome::Success, true, "", 3.4});
+        beginTrial({});
+        tick(5, true);
+        EXPECT_TRUE(view().scene) << "another trial";
+        run_.take(AttemptEnded{0, measures::Outcome::Success, true, "", 3.4});
+    }
 }
 
 TEST_F(Participant, LearnsTheResultOnlyAsFarAsTheProtocolSays) {
