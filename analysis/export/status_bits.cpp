@@ -47,6 +47,8 @@ const char* statusBitMeaning(TickStatus bit) {
             return "the held part was put where it overlaps: it is led out, and no contact counts";
         case kWeighed:
             return "the held part's weight is in the force (nothing to worry about)";
+        case kAidedInAir:
+            return "viscosity or a guide is in the force (nothing to worry about)";
     }
     return nullptr;
 }

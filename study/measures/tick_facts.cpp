@@ -18,7 +18,7 @@ Pose toPose(const std::array<float, 3>& p, const std::array<float, 4>& q) {
 
 bool isContact(const TickRecord& record) {
     const bool wrench = toVec3(record.force_N).norm() > kNoForce || toVec3(record.torque_Nm).norm() > kNoTorque;
-    return record.contacts > 0 || (wrench && (record.status & kWeighed) == 0) ||
+    return record.contacts > 0 || (wrench && (record.status & (kWeighed | kAidedInAir)) == 0) ||
            ((record.status & kWrenchWithheld) != 0 && record.hand_depth_m > 0.0f);
 }
 

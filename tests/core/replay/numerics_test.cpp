@@ -60,7 +60,7 @@ constexpr std::uint64_t kWeight = 0x3be8ace262a36b3fu;
 constexpr std::uint64_t kNavigation = 0x1210f7c4ccd5dadcu;
 
 /// The same with viscosity and a guide.
-constexpr std::uint64_t kGuidance = 0x0e5a121e84a9b78bu;
+constexpr std::uint64_t kGuidance = 0x6e432e1f9b55594eu;
 
 constexpr const char* kParts = R"(
 [[part]]

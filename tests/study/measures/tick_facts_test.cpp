@@ -36,16 +36,18 @@ TEST(TickFacts, WithoutADisplayedWrenchTheHandsDepthTellsOfContact) {
     EXPECT_FALSE(isContact(inside));
 }
 
-TEST(TickFacts, AWeightIsNoContact) {
-    // Truth: closed form (definition)
-    TickRecord hanging;
-    hanging.force_N = {0.0f, 0.0f, -1.2f};
-    hanging.torque_Nm = {0.01f, 0.0f, 0.0f};
-    EXPECT_TRUE(isContact(hanging));
-    hanging.status = kWeighed;
-    EXPECT_FALSE(isContact(hanging));
-    hanging.contacts = 1;
-    EXPECT_TRUE(isContact(hanging));
+TEST(TickFacts, WhatIsFeltInTheAirIsNoContact) {
+    // Truth: closed form (definition): weight, viscosity and a guide
+    for (const std::uint32_t in_air : {kWeighed, kAidedInAir}) {
+        TickRecord hanging;
+        hanging.force_N = {0.0f, 0.0f, -1.2f};
+        hanging.torque_Nm = {0.01f, 0.0f, 0.0f};
+        EXPECT_TRUE(isContact(hanging));
+        hanging.status = in_air;
+        EXPECT_FALSE(isContact(hanging));
+        hanging.contacts = 1;
+        EXPECT_TRUE(isContact(hanging));
+    }
 }
 
 TEST(TickFacts, TipIsInTheBoreBelowTheMouthAndWithinTheClearanceAndTheWallsGive) {

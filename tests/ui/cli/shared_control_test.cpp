@@ -63,6 +63,7 @@ TEST_F(SharedControl, WhoSeesNothingSucceedsWhereTheGuideLeads) {
             ASSERT_LE(force, 5.0 * share * (1.0 + 1e-6));
             const bool guided = share > 0.0 && (record.status & kEngaged) != 0;
             ASSERT_EQ(record.effects, guided ? 8u : 0u);
+            ASSERT_EQ((record.status & kAidedInAir) != 0, guided);
         }
     }
     for (const auto& [condition, count] : counts)
@@ -81,6 +82,10 @@ TEST_F(SharedControl, ReplaysAndExportsWhatTheGuideAdded) {
     EXPECT_EQ(replayed.exit_code, 0) << replayed.out << replayed.err;
     const Ended exported = runProgram(folder_.path(), {"export", "study.db", "--out", "out"});
     ASSERT_EQ(exported.exit_code, 0) << exported.err;
+    // In the air the guide's force is no contact: the way to the hole takes a second at least.
+    const fake::CsvFile trials = fake::readCsv(readText(folder_ / "out/trials.csv"));
+    for (std::size_t row = 0; row < trials.rows.size(); ++row)
+        EXPECT_LT(std::stod(trials.at(row, "contact_time_s")), std::stod(trials.at(row, "trial_time_s")) - 1.0) << row;
     const std::string codebook = readText(folder_ / "out/codebook.csv");
     EXPECT_NE(codebook.find("guidance_force_x_N"), std::string::npos);
     EXPECT_NE(codebook.find("only in files of conditions with effects.record"), std::string::npos);
