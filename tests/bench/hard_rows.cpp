@@ -56,7 +56,7 @@ Result<Done> addFound(const Extent& extent, std::vector<Row>& rows) {
         for (const auto& [method, name] : hard::methods()) {
             if (!((found.methods >> static_cast<int>(method)) & 1u)) continue;
             if (!extent.wanted(kHardGroup, fmt::format("found {} {}", found.name, name))) continue;
-            const auto measured = hard::measureFound(found, method, hard::fullSize());
+            const auto measured = hard::measureFound(found, method, hard::fullSize(), hard::fullSize() ? 5 : 3);
             if (!measured) return measured.errors();
             addFoundRows(found, name, *measured, rows);
         }

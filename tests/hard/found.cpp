@@ -132,7 +132,7 @@ FoundScene meshScene(const std::string& name, const geometry::TriangleMesh& held
     return scene;
 }
 
-Result<FoundMeasured> measureFound(const Found& found, scene::ContactMethod method, bool full) {
+Result<FoundMeasured> measureFound(const Found& found, scene::ContactMethod method, bool full, int runs) {
     if (found.compute != nullptr) return found.compute(method, full);
     const std::int64_t ticks = std::llround((full ? found.full_seconds : found.seconds) / kTickSeconds);
     FoundMeasured result;
@@ -151,7 +151,7 @@ Result<FoundMeasured> measureFound(const Found& found, scene::ContactMethod meth
         if (!triangles && not_followed.empty()) not_followed = followFault(*run);
         std::vector<double> us;
         for (const Tick& t : run->ticks) us.push_back(static_cast<double>(t.us));
-        for (int again = 1; again < (full ? 5 : 3); ++again) {
+        for (int again = 1; again < runs; ++again) {
             const auto timed = runScene(scene->spec, driveOf(*scene), ticks);
             if (!timed) return timed.errors();
             for (std::size_t i = 0; i < us.size(); ++i)

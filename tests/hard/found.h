@@ -71,8 +71,9 @@ std::vector<Found> foundShapes();
 std::vector<Found> foundMeshes();
 std::vector<Found> foundOthers();
 
-/// Judges one case with one method. By default in a short version. Errors: its scene cannot be read or built.
-Result<FoundMeasured> measureFound(const Found& found, scene::ContactMethod method, bool full);
+/// Judges one case with one method; a tick's time is the least of so many `runs` of the same motion. By default in a
+/// short version. Errors: its scene cannot be read or built.
+Result<FoundMeasured> measureFound(const Found& found, scene::ContactMethod method, bool full, int runs);
 
 /// A scene file's shapes, led by `hand` from where the held part starts.
 Result<FoundScene> foundScene(const std::string& file, const std::function<Pose(const Pose& start, double t)>& hand);

@@ -101,7 +101,7 @@ TEST_P(FoundCase, IsNoLongerFound) {
     // Truth: triangle against triangle as they were made (mesh_crossing.h), or dense points and exact distances
     // (dense_overlap.h), at every tick and on the way between. What is missed of grain and time is printed.
     const auto& [found, method, name] = GetParam();
-    const auto measured = measureFound(*found, method, fullSize());
+    const auto measured = measureFound(*found, method, fullSize(), 1);  // no time is judged here
     ASSERT_TRUE(measured) << toString(measured.errors().front());
     std::printf("%s", describe(*found, name, *measured).c_str());
     for (const Figure& figure : measured->figures)

@@ -2272,7 +2272,7 @@
     </message>
     <message>
         <source>effects.guidance has a share above 0: a guide draws the hand along</source>
-        <translation>effects.guidance hat einen Anteil über 0: Ein Führer zieht die Hand mit</translation>
+        <translation>effects.guidance hat einen Anteil über 0: Eine Führung zieht die Hand mit</translation>
     </message>
     <message>
         <source>sum of effects</source>
