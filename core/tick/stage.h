@@ -54,13 +54,16 @@ inline constexpr bool kIsPart = [] {
 /// a reference to each that it owns or hands on; it sees nothing else. The parts are those of HandState, which last,
 /// and of TickFrame, which die with the tick. An effect that hums:
 ///
-///   struct Humming { double phase = 0.0; };                                               // its own state
-///   void renderHum(const HandModel&, const HandSample&, Humming&, HandWrench&) noexcept;  // reads, owns, hands on
+///   struct Humming { double phase = 0.0; };                                             // its own state
+///   struct HumShare { Wrench of_hum; };                                                 // and what it adds
+///   void renderHum(const HandModel&, const HandSample&, Humming&, HumShare&) noexcept;  // reads, owns, owns
 ///   inline constexpr StageOf kHum{renderHum, {.name = "hum", .parameters = "effects.hum", // its card
 ///                                             .cost = "constant", .needs = ..., .reason = ..., .spared = ...}};
 ///
 /// goes into hum.h and hum.cpp, in the room's CMakeLists.txt. Then
 ///   - scene::Effects (core/scene/scene_spec.h) gets its parameters, a Hum, which it finds in HandModel::effects,
+///   - tick_frame.h HumShare, TickFrame (step.h) the part, effect_sum.h, which adds it, WrenchEffect (tick_record.h) its
+///     name,
 ///   - hand_state.h the header, HandState the part Humming and AllStages, at its place in the order, kHum,
 ///   - tests/support/every_effect.h the effect: stage_test.cpp says whether the declaration is true.
 /// Memory that depends on the scene is sized in makeState (hand_state.cpp).
