@@ -20,13 +20,14 @@ out=build/faults
 workers=$(nproc)
 mkdir -p $out
 
-# The core once, without faults; what the planted rooms stand on.
+# The core once, without faults; what the planted rooms stand on. Each step says itself that it failed: where a caller
+# asks whether a function did, bash goes on after a command of it that did not.
 build_core() {
     cmake -S . -B $out/core -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1 \
-        -DPASSUNG_PROGRAM=OFF -DPASSUNG_TESTS=OFF
-    cmake --build $out/core -j "$workers"
-    cmake --install $out/core --prefix $out/installed
-    c++ -std=c++20 -O1 tests/faults/faults.cpp -o $out/planter
+        -DPASSUNG_PROGRAM=OFF -DPASSUNG_TESTS=OFF -DPASSUNG_TICK_ONE_PIECE=ON &&
+        cmake --build $out/core -j "$workers" &&
+        cmake --install $out/core --prefix $out/installed &&
+        c++ -std=c++20 -O1 tests/faults/faults.cpp -o $out/planter
 }
 
 # A worker's own copy, built without faults; what is newer than before is copied, so that little is built again. It is
@@ -35,14 +36,14 @@ build_core() {
 build_worker() {
     local tree=$out/$1/tree
     mkdir -p $tree
-    copy_changed "$tree"
-    configure "$1" pieces OFF
-    cmake --build "$out/$1/pieces" -j 1
-    "$out/$1/pieces/differential" >"$out/$1/as_it_stands.txt"
+    copy_changed "$tree" &&
+        configure "$1" pieces OFF &&
+        cmake --build "$out/$1/pieces" -j 1 &&
+        "$out/$1/pieces/differential" >"$out/$1/as_it_stands.txt" || return 1
     grep -q $'\.h\t' "$out/$1/faults.tsv" || return 0
-    configure "$1" whole ON
-    cmake --build "$out/$1/whole" -j 1 --target differential
-    "$out/$1/whole/differential" | cmp - "$out/$1/as_it_stands.txt"
+    configure "$1" whole ON &&
+        cmake --build "$out/$1/whole" -j 1 --target differential &&
+        "$out/$1/whole/differential" | cmp - "$out/$1/as_it_stands.txt"
 }
 
 # configure WORKER BUILD ONE_PIECE
