@@ -129,8 +129,10 @@ items = ["number"]
 answers = ["NA", 3]
 scores = { number = 3 }
 )");
-        writeText(folder_ / "study.toml", readText(folder_ / "study.toml") +
-                                              "[[questionnaire]]\nfile = \"ask.toml\"\nmoment = \"session_start\"\n");
+        std::string study = readText(folder_ / "study.toml");
+        study.replace(study.find("hold_s = 0.05"), 13, "hold_s = 3");  // a command comes while a trial runs
+        writeText(folder_ / "study.toml",
+                  study + "[[questionnaire]]\nfile = \"ask.toml\"\nmoment = \"session_start\"\n");
     }
     void tell(std::vector<std::string> words) const {
         words.insert(words.begin(), "session");
