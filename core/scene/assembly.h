@@ -40,6 +40,10 @@ struct GoalError {
 /// `folds` as in AssemblyStep. rt-safe.
 GoalError goalError(const Pose& X_WP, const Pose& X_WGoal, int folds) noexcept;
 
+/// Of the poses that a turn about the goal's z axis makes like `X_WGoal` the one that a part at `X_WP` needs the least
+/// turn to. rt-safe.
+Pose nearestGoal(const Pose& X_WP, const Pose& X_WGoal, int folds) noexcept;
+
 /// Where the step's part belongs now. `X_WP`: of every part of the scene. rt-safe.
 Pose goalOf(const AssemblyStep& step, std::span<const Pose> X_WP) noexcept;
 

@@ -75,6 +75,18 @@ void checkGuidance(const SceneSpec& scene, Checks& check) {
                   "must be 0 where parts are picked up: its way is that of one part");
 }
 
+void checkSnap(const SceneSpec& scene, Checks& check) {
+    const Snap& snap = scene.effects.snap;
+    check.notNegative("effects: snap: stiffness", snap.stiffness);
+    check.positive("effects: snap: range", snap.range);
+    for (const Pose& X_WG : snap.X_WG) check.finite("effects: snap: at", X_WG);
+    const auto poses = static_cast<double>(snap.X_WG.size());
+    check.require(snap.X_WG.size() <= kMostWayPoses, "effects: snap: at", poses, "must have at most 64 poses");
+    if (!snap.any()) return;
+    check.require(!snap.X_WG.empty() || scene.effects.picks(), "effects: snap: at", poses,
+                  "must have a pose where no part is picked up");
+}
+
 }  // namespace
 
 std::size_t SceneSpec::heldBy(std::size_t i) const {
@@ -187,6 +199,7 @@ std::vector<Error> SceneSpec::validate() const {
     check.notNegative("effects: viscosity: damping", effects.viscosity.damping);
     check.notNegative("effects: viscosity: rotational damping", effects.viscosity.rotational_damping);
     checkGuidance(*this, check);
+    checkSnap(*this, check);
     check.notNegative("contact: proxy filter", contact.proxy_filter);
     for (std::size_t i = 0; i < handCount(); ++i) check.device(hand(i));
     return check.errors;

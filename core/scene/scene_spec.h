@@ -181,6 +181,16 @@ struct Guidance {
     double rotational_stiffness = 0.2;  // likewise [N·m/rad], ≥ 0
 };
 
+/// Near a place of its own a held part is drawn into it (core/tick/snap.h).
+struct Snap {
+    double stiffness = 0.0;       // in the place [N/m], ≥ 0; 0: none
+    double range = 0.005;         // of each place, a turn counted by the coupling's stiffnesses [m], > 0
+    std::vector<Pose> X_WG = {};  // places of what the first hand begins with, in the world, at most kMostWayPoses;
+                                  // of parts that are picked up the steps say where each belongs
+
+    bool any() const noexcept { return stiffness > 0.0; }
+};
+
 /// Effects beyond contact; what is 0 is not built.
 struct Effects {
     double passivity_damping = 0.0;  // most of the passivity controller's damper [N·s/m], ≥ 0; 0: no controller
@@ -188,6 +198,7 @@ struct Effects {
     Weight weight;
     Viscosity viscosity = {};
     Guidance guidance = {};  // of the first hand
+    Snap snap = {};
     Pick pick;
     Navigation navigation = {};  // of the first hand
     bool record = false;         // what each of them adds to the wrench is told of every tick

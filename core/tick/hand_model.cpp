@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/assert.h"
 #include "core/field/distance_field.h"
 #include "core/scene/part_mass.h"
 #include "core/tick/hand_state.h"
@@ -104,6 +105,23 @@ void addGravity(HandModel& model, const scene::Scene& scene) {
     model.centre = mass->centre;
 }
 
+/// Poses that the scene names, for what the first hand begins with; goals of steps, for the parts that they are of.
+void addSnapPlaces(HandModel& model, const scene::SceneSpec& spec, std::size_t hand) {
+    if (hand == 0 && model.body == spec.heldBy(0))
+        for (const Pose& X_WG : spec.effects.snap.X_WG) model.snap_places.push_back({.X_IS = X_WG});
+    for (const scene::AssemblyStep& step : spec.effects.pick.steps) {
+        if (step.part != model.body) continue;
+        SnapPlace place{.X_IS = step.X_IGoal, .folds = step.folds};
+        if (step.into != scene::AssemblyStep::kWorld) {
+            const auto is_it = [&step](const Obstacle& obstacle) { return obstacle.body == step.into; };
+            const auto into = std::find_if(model.obstacles.begin(), model.obstacles.end(), is_it);
+            PASSUNG_ASSERT(into != model.obstacles.end());  // all but the part itself
+            place.into = static_cast<std::size_t>(into - model.obstacles.begin());
+        }
+        model.snap_places.push_back(place);
+    }
+}
+
 template <const auto&... stage>
 void addStages(HandModel& model, StageList<stage...>) {
     const auto add = [&model](const StageCard& card, auto* run) {
@@ -134,7 +152,7 @@ std::uint32_t HandModel::wrenchEffects() const noexcept {
     };
     return bit(WrenchEffect::Transients, hasTransients()) | bit(WrenchEffect::Weight, hasWeight()) |
            bit(WrenchEffect::Viscosity, effects.viscosity.any()) |
-           bit(WrenchEffect::Guidance, effects.guidance.share > 0.0);
+           bit(WrenchEffect::Guidance, effects.guidance.share > 0.0) | bit(WrenchEffect::Snap, !snap_places.empty());
 }
 
 geometry::NearList nearListOf(const HandModel& model, double beyond) {
@@ -188,6 +206,7 @@ HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size
     }
     if (model.effects.guidance.share > 0.0)
         model.way = GuideWay(model.X_WG_start, model.effects.guidance.X_WG, model.metric_radius);
+    if (model.effects.snap.any() && model.hasPart()) addSnapPlaces(model, spec, hand);
     addStages(model, AllStages{});
     return model;
 }

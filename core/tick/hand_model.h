@@ -32,6 +32,14 @@ struct ProxyMargins {
 };
 
 inline constexpr std::size_t kNoBody = ~std::size_t{0};
+inline constexpr std::size_t kNoObstacle = ~std::size_t{0};
+
+/// Where the held part belongs.
+struct SnapPlace {
+    std::size_t into = kNoObstacle;  // of HandModel::obstacles, in whose frame it is; kNoObstacle: the world's
+    Pose X_IS;
+    int folds = 1;  // as scene::AssemblyStep::folds
+};
 
 /// A hand with a part that it holds, or with none: what does not change while a trial runs. Borrows the world.
 struct HandModel {
@@ -67,7 +75,8 @@ struct HandModel {
     Vec3 centre = Vec3::Zero();       // of its mass, part frame [m]
     ProxyMargins margins;
     scene::Effects effects;
-    GuideWay way;  // of its guidance
+    GuideWay way;                        // of its guidance
+    std::vector<SnapPlace> snap_places;  // empty: nothing draws it
     bool record_hand_depth = true;
     bool display_wrench = true;
 

@@ -22,6 +22,7 @@
 #include "core/tick/penalty_tool.h"
 #include "core/tick/proxy.h"
 #include "core/tick/proxy_state.h"
+#include "core/tick/snap.h"
 #include "core/tick/stage.h"
 #include "core/tick/step.h"
 #include "core/tick/surface_follow.h"
@@ -47,7 +48,7 @@ using AllStages = StageList<kInputGuard, kEnergyAccount, kNavigation, kStartGate
                             kSurfaceProxy, kSurfaceRecord, kSurfaceDepth,               // the same on surfaces
                             kFollowedPart, kVirtualCoupling,                            // their wrench
                             kHeldPushes, kContactSign, kTransients, kContactShares, kWeightInHand, kViscosity,
-                            kGuidance, kEffectSum,                                // effects
+                            kGuidance, kSnap, kEffectSum,                         // effects
                             kClutchedWrench, kOutputDelay, kPassivityController,  // what goes out
                             kNoWrench, kOutputLimits>;
 

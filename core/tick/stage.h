@@ -63,7 +63,8 @@ inline constexpr bool kIsPart = [] {
 /// goes into hum.h and hum.cpp, in the room's CMakeLists.txt. Then
 ///   - scene::Effects (core/scene/scene_spec.h) gets its parameters, a Hum, which it finds in HandModel::effects,
 ///   - tick_frame.h HumShare, TickFrame (step.h) the part, effect_sum.h, which adds it, WrenchEffect (tick_record.h)
-///     its name,
+///     its name, HandModel::wrenchEffects (hand_model.cpp) when, makeRecord (step.cpp) its place in records,
+///   - forgetPast (pick.cpp) what of Humming tells of the past, where the hand takes another part,
 ///   - hand_state.h the header, HandState the part Humming and AllStages, at its place in the order, kHum,
 ///   - tests/support/every_effect.h the effect: stage_test.cpp says whether the declaration is true.
 /// Memory that depends on the scene is sized in makeState (hand_state.cpp).

@@ -292,8 +292,9 @@ TickRecord makeRecord(std::int64_t tick, const DeviceReading& reading, const Tic
     store(record.navigation_quaternion, frame.turn);
     record.effects = frame.effects;
     if (frame.effects != 0) {
-        const std::array<const Wrench*, kWrenchEffects> added{&frame.of_transients, &frame.of_weight,
-                                                              &frame.of_viscosity, &frame.of_guidance};
+        const std::array added{&frame.of_transients, &frame.of_weight, &frame.of_viscosity, &frame.of_guidance,
+                               &frame.of_snap};
+        static_assert(added.size() == kWrenchEffects);
         for (std::size_t i = 0; i < kWrenchEffects; ++i) store(record.effect_wrench[i], *added[i]);
         record.guided = static_cast<float>(frame.guided);
     }

@@ -79,6 +79,10 @@ struct GuidanceShare {
     double guided = std::numeric_limits<double>::quiet_NaN();  // share of the way that the guide has gone
 };
 
+struct SnapShare {
+    Wrench of_snap;
+};
+
 /// Owner: sum of effects.
 struct EffectRecord {
     std::uint32_t effects = 0;  // HandModel::wrenchEffects, where records are to tell what they add

@@ -160,6 +160,7 @@ constexpr std::array kTables{
     TableInfo{"effects.weight", "`[effects.weight]`", ""},
     TableInfo{"effects.viscosity", "`[effects.viscosity]`", ""},
     TableInfo{"effects.guidance", "`[effects.guidance]`", ""},
+    TableInfo{"effects.snap", "`[effects.snap]`", ""},
     TableInfo{"effects.pick", "`[effects.pick]`", ""},
     TableInfo{"effects.clutch", "`[effects.clutch]`", ""},
     TableInfo{"effects.position_scale", "`[effects.position_scale]`", ""},

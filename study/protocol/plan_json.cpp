@@ -153,17 +153,52 @@ std::string otherHandsJson(const plan::Condition& condition) {
     return jsonList(hands);
 }
 
+std::string posesJson(const std::vector<Pose>& poses) {
+    std::vector<std::string> list;
+    for (const Pose& pose : poses) list.push_back(poseJson(pose));
+    return jsonList(list);
+}
+
 std::string guidanceJson(const scene::Guidance& guidance) {
-    std::vector<std::string> way;
-    for (const Pose& X_WG : guidance.X_WG) way.push_back(poseJson(X_WG));
     return JsonObject()
         .number("share", guidance.share)
-        .json("way", jsonList(way))
+        .json("way", posesJson(guidance.X_WG))
         .number("speed_m_per_s", guidance.speed)
         .number("lead_m", guidance.lead)
         .number("stiffness_N_per_m", guidance.stiffness)
         .number("rotational_stiffness_Nm_per_rad", guidance.rotational_stiffness)
         .str();
+}
+
+/// Parts by their place in the scene, from 0, -1: the world; steps by theirs, from 1.
+std::string stepJson(const scene::AssemblyStep& step) {
+    const bool world = step.into == scene::AssemblyStep::kWorld;
+    std::vector<std::string> after;
+    for (std::size_t i = 0; i < scene::kMostSteps; ++i)
+        if ((step.after & scene::stepBit(i)) != 0) after.push_back(std::to_string(i + 1));
+    return JsonObject()
+        .integer("part", static_cast<std::int64_t>(step.part))
+        .integer("into", world ? -1 : static_cast<std::int64_t>(step.into))
+        .json("goal", poseJson(step.X_IGoal))
+        .number("position_tolerance_m", step.position_tolerance)
+        .number("angle_tolerance_rad", step.angle_tolerance)
+        .integer("symmetry", step.folds)
+        .json("after", jsonList(after))
+        .boolean("locks", step.locks)
+        .str();
+}
+
+std::string pickJson(const scene::Pick& pick) {
+    JsonObject json;
+    json.number("reach_m", pick.reach)
+        .integer("button", pick.button)
+        .text("closed", pick.on_press ? "on_press" : "while_down")
+        .text("let_go", pick.locks ? "lock" : "leave");
+    std::vector<std::string> steps;
+    for (const scene::AssemblyStep& step : pick.steps) steps.push_back(stepJson(step));
+    if (!steps.empty()) json.json("steps", jsonList(steps));
+    if (pick.undo_button > 0) json.integer("undo_button", pick.undo_button);
+    return json.str();
 }
 
 std::string effectsJson(const scene::Effects& effects) {
@@ -183,14 +218,14 @@ std::string effectsJson(const scene::Effects& effects) {
                                    .number("rotational_damping_Nms_per_rad", effects.viscosity.rotational_damping)
                                    .str());
     if (effects.guidance.share > 0.0) json.json("guidance", guidanceJson(effects.guidance));
-    if (effects.record) json.boolean("record", true);
-    if (effects.picks())
-        json.json("pick", JsonObject()
-                              .number("reach_m", effects.pick.reach)
-                              .integer("button", effects.pick.button)
-                              .text("closed", effects.pick.on_press ? "on_press" : "while_down")
-                              .text("let_go", effects.pick.locks ? "lock" : "leave")
+    if (effects.snap.any())
+        json.json("snap", JsonObject()
+                              .number("stiffness_N_per_m", effects.snap.stiffness)
+                              .number("range_m", effects.snap.range)
+                              .json("at", posesJson(effects.snap.X_WG))
                               .str());
+    if (effects.record) json.boolean("record", true);
+    if (effects.picks()) json.json("pick", pickJson(effects.pick));
     addNavigation(effects.navigation, json);
     return json.str();
 }

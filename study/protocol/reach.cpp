@@ -49,7 +49,9 @@ public:
         const Node& pose = heldPose();
         reach(held_.X_WP, 0.0, pose, fmt::format("scene.part.{}.pose", held_.name), "the start");
         checkStart();
-        checkGuide();
+        const scene::Effects& effects = scene_.effects;
+        if (effects.guidance.share > 0.0) checkPoses("guidance", "way", effects.guidance.X_WG, "the guide's way");
+        if (effects.snap.any()) checkPoses("snap", "at", effects.snap.X_WG, "a place that draws the part");
         std::visit([this](const auto& form) { check(form); }, task_.form);
     }
 
@@ -199,7 +201,7 @@ private:
                              millimetres(least), target_->name));
     }
 
-    void handleTurns(double turn, double allowed, const Node& at, const char* key) {
+    void handleTurns(double turn, double allowed, const Node& at, const std::string& key) {
         if (device_.sensed_degrees >= 6 || turn <= allowed + 1e-9) return;
         fail(at, key,
              fmt::format("asks for a turn of {:.3g} degrees, but the handle of {} does not turn",
@@ -220,18 +222,16 @@ private:
                  fmt::format("no way on {} leaves this sphere: at most {}", device_.name, millimetres(farthest)));
     }
 
-    /// The guide leads nowhere that the hand cannot follow.
-    void checkGuide() {
-        if (!(scene_.effects.guidance.share > 0.0)) return;
+    /// The hand can follow to each of an effect's poses. `what`: of the effect, in words.
+    void checkPoses(const char* effect, const char* key, std::span<const Pose> poses, const char* what) {
         const Node* effects = tables_.scene.find("effects");
-        const Node* guidance = effects != nullptr ? effects->find("guidance") : nullptr;
-        const Node* way = guidance != nullptr ? guidance->find("way") : nullptr;
-        if (way == nullptr) return;
-        constexpr const char* kKey = "scene.effects.guidance.way";
-        for (std::size_t i = 0; i < way->items.size(); ++i) {
-            const Pose& X_WG = scene_.effects.guidance.X_WG[i];
-            reach(X_WG, 0.0, way->items[i], kKey, "the guide's way");
-            handleTurns(X_WG.q.angularDistance(held_.X_WP.q), 0.0, way->items[i], kKey);
+        const Node* table = effects != nullptr ? effects->find(effect) : nullptr;
+        const Node* list = table != nullptr ? table->find(key) : nullptr;
+        if (list == nullptr) return;
+        const std::string path = fmt::format("scene.effects.{}.{}", effect, key);
+        for (std::size_t i = 0; i < list->items.size(); ++i) {
+            reach(poses[i], 0.0, list->items[i], path, what);
+            handleTurns(poses[i].q.angularDistance(held_.X_WP.q), 0.0, list->items[i], path);
         }
     }
 

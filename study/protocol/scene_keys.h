@@ -166,7 +166,8 @@ inline constexpr std::array kSceneKeys{
 
     Key{"effects", "viscosity", Table, kAny, "", "(none)", "A damper on the held part's motion, in the air and in contact: it moves as in a fluid."},
     Key{"effects", "guidance", Table, kAny, "", "(none)", "Shared control: a guide goes along a way before the first hand and draws it after itself by a spring, with the share that is asked for. It goes with one part: not with `effects.pick`; and it gives energy out: not with a passivity controller."},
-    Key{"effects", "record", Boolean, kAny, "", "false", "True: what each of transients, weight, viscosity and guidance adds to the wrench is recorded in every tick, and exported with the samples."},
+    Key{"effects", "snap", Table, kAny, "", "(none)", "Near a place of its own the held part is drawn into it, as by a magnet: with `effects.pick` into the goals of the task's steps, else into the poses `at`. What it gives on the way in it takes on the way out: not with a passivity controller."},
+    Key{"effects", "record", Boolean, kAny, "", "false", "True: what each of transients, weight, viscosity, guidance and snap adds to the wrench is recorded in every tick, and exported with the samples."},
 
     Key{"effects", "pick", Table, kAny, "", "(none)", "Hands pick parts up and let them go, by a button: a hand closes on the nearest pickable part, and the coupling holds it where the hand's point was."},
     Key{"effects", "clutch", Table, kAny, "", "(none)", "While its button is held the hand moves and the part stays, as a mouse that is lifted; let go, the part goes on from there without a jump. The wrench fades within 50 ms, at once where the hand yields to it, and a coupling relaxes, so that no energy is given out."},
@@ -201,6 +202,10 @@ inline constexpr std::array kSceneKeys{
     Key{"effects.guidance", "lead_mm", Number, aboveUpTo(0, 100), "", "10", "How far the guide goes before the hand; its spring pulls with no more than this times its stiffness."},
     Key{"effects.guidance", "stiffness_N_per_m", Number, from(0, 10000), "", "500", "Stiffness of the guide's spring at a share of 1. With the coupling's it stays below the device's stable maximum."},
     Key{"effects.guidance", "rotational_stiffness_Nm_per_rad", Number, from(0, 100), "", "0.2", "The same of turning."},
+
+    Key{"effects.snap", "stiffness_N_per_m", Number, from(0, 10000), "", "!", "Stiffness in the place. 0: no snap at all, to the last bit. The force is largest, 0.286 times this times the range, where 0.45 of the range is left. With the coupling's, and a guide's, it stays below the device's stable maximum. Against turning it is this times rotational_stiffness over stiffness of the contact."},
+    Key{"effects.snap", "range_mm", Number, aboveUpTo(0, 1000), "", "5", "Distance of the part's origin from the place, where the part is not turned against it, from which on it is drawn; a turn of 1 rad counts as the square root of rotational_stiffness over stiffness of the contact."},
+    Key{"effects.snap", "at", Tables, kAny, "", "(the goals of the steps)", "Places of the first hand's part as poses in the world, at most 64; only without `effects.pick`, and then one at least. Each has a `position` and `rotation_deg`."},
 
     Key{"effects.pick", "reach_mm", Number, aboveUpTo(0, 1000), "", "!", "Largest distance of a part's surface from the hand's point, the origin of what the registration puts into the handle."},
     Key{"effects.pick", "button", Integer, from(1, scene::kButtons), "", "1", "Number of the device's button, from 1. No other effect may have it."},

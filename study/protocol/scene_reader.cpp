@@ -212,14 +212,16 @@ void checkStability(const TableReader& device_table, const TableReader& contact_
 
 /// The coupling is resolved against the first hand's device: another one has to bear it.
 void checkOtherStiffness(const TableReader& hand_table, const TableReader& contact_table,
-                         const DeviceDescription* device, const scene::ContactSpec& contact,
+                         const DeviceDescription* device, const scene::ContactSpec& contact, const scene::Snap& snap,
                          const scene::HandSpec& hand) {
     if (device == nullptr || contact_table.boolean("allow_unstable")) return;
+    const double stiffer = 1.0 + snap.stiffness / contact.stiffness;  // by the spring beside the coupling's
     const auto check = [&](const char* key, double stiffness, double maximum) {
-        if (maximum > 0.0 && stiffness > maximum * (1.0 + 1e-9))
-            hand_table.fail("device", fmt::format("{} displays contact.{} up to {} stably, the scene's is {}; lower "
+        if (maximum > 0.0 && stiffer * stiffness > maximum * (1.0 + 1e-9))
+            hand_table.fail("device", fmt::format("{} displays contact.{}{} up to {} stably, the scene's is {}; lower "
                                                   "it, or contact.allow_unstable = true",
-                                                  device->name, key, maximum, stiffness));
+                                                  device->name, key, snap.any() ? " and effects.snap together" : "",
+                                                  maximum, stiffer * stiffness));
     };
     check("stiffness_N_per_m", contact.stiffness, device->stable_stiffness_N_per_m / hand.largestScale());
     check("rotational_stiffness_Nm_per_rad", contact.rotational_stiffness,
@@ -409,50 +411,91 @@ void readOtherHands(const TableReader& read, std::span<const std::string> names,
             hand.navigation = readNavigation(own, device, errors);
         }
         checkStability(device_table, contact_table, device, content.scene.contact, hand);
-        checkOtherStiffness(hand_table, contact_table, device, content.scene.contact, hand);
+        checkOtherStiffness(hand_table, contact_table, device, content.scene.contact, content.scene.effects.snap, hand);
         content.other_devices.push_back(device_table.text("preset"));
         content.scene.other_hands.push_back(std::move(hand));
     }
 }
 
+/// The poses of a list; what is there has one at least, and few enough.
+std::vector<Pose> readPoses(const TableReader& read, const char* key, double units, Errors& errors) {
+    std::vector<Pose> poses;
+    for (const Node& pose : read.items(key))
+        poses.push_back(
+            readPose(TableReader(pose, {"pose"}, read.pathOf(key), errors), "position", "rotation_deg", units));
+    if (poses.size() > scene::kMostWayPoses)
+        read.fail(key, fmt::format("must have at most {} poses", scene::kMostWayPoses));
+    else if (read.has(key) && poses.empty())
+        read.fail(key, "must have a pose at least");
+    return poses;
+}
+
 scene::Guidance readGuidance(const TableReader& read, double units, Errors& errors) {
-    scene::Guidance guidance{.share = read.numberOr("share", 0.0),
-                             .speed = read.number("speed_mm_per_s"),
-                             .lead = read.number("lead_mm"),
-                             .stiffness = read.number("stiffness_N_per_m"),
-                             .rotational_stiffness = read.number("rotational_stiffness_Nm_per_rad")};
-    for (const Node& pose : read.items("way"))
-        guidance.X_WG.push_back(
-            readPose(TableReader(pose, {"pose"}, read.pathOf("way"), errors), "position", "rotation_deg", units));
-    if (guidance.X_WG.size() > scene::kMostWayPoses)
-        read.fail("way", fmt::format("must have at most {} poses", scene::kMostWayPoses));
-    else if (read.has("way") && guidance.X_WG.empty())
-        read.fail("way", "must have a pose at least");
-    return guidance;
+    return {.share = read.numberOr("share", 0.0),
+            .X_WG = readPoses(read, "way", units, errors),
+            .speed = read.number("speed_mm_per_s"),
+            .lead = read.number("lead_mm"),
+            .stiffness = read.number("stiffness_N_per_m"),
+            .rotational_stiffness = read.number("rotational_stiffness_Nm_per_rad")};
+}
+
+scene::Snap readSnap(const TableReader& read, double units, Errors& errors) {
+    return {.stiffness = read.numberOr("stiffness_N_per_m", 0.0),
+            .range = read.number("range_mm"),
+            .X_WG = readPoses(read, "at", units, errors)};
 }
 
 /// A guide and what cannot be beside it.
-void checkGuidance(const TableReader& effects_table, const TableReader& contact_table, const DeviceDescription* device,
-                   const scene::SceneSpec& scene, Errors& errors) {
-    const Node* node = effects_table.node("guidance");
-    const scene::Guidance& guidance = scene.effects.guidance;
-    if (node == nullptr || !(guidance.share > 0.0)) return;
-    const TableReader read(*node, {"effects.guidance"}, effects_table.pathOf("guidance"), errors);
+void checkGuidance(const TableReader& effects_table, const scene::Guidance& guidance, Errors& errors) {
+    if (!(guidance.share > 0.0)) return;
+    const TableReader read(*effects_table.node("guidance"), {"effects.guidance"}, effects_table.pathOf("guidance"),
+                           errors);
     if (effects_table.has("pick"))
         read.fail("share", "must be 0 with effects.pick: the guide's way is that of one part");
     if (effects_table.has("passivity_controller"))
         read.fail("share", "must be 0 with effects.passivity_controller, which would take back what the guide gives");
-    if (device == nullptr || contact_table.boolean("allow_unstable")) return;
-    const auto check = [&](const char* key, double coupling, double guide, double maximum) {
-        if (maximum > 0.0 && coupling + guidance.share * guide > maximum * (1.0 + 1e-9))
-            read.fail(key,
-                      fmt::format("with contact.{} = {:.6g} it is more than {} displays stably, {:.6g} in all; lower "
-                                  "either or the share, or contact.allow_unstable = true",
-                                  key, coupling, device->name, maximum));
+}
+
+/// Snap likewise.
+void checkSnap(const TableReader& effects_table, const scene::Snap& snap, Errors& errors) {
+    if (!snap.any()) return;
+    const TableReader read(*effects_table.node("snap"), {"effects.snap"}, effects_table.pathOf("snap"), errors);
+    if (effects_table.has("passivity_controller"))
+        read.fail("stiffness_N_per_m",
+                  "must be 0 with effects.passivity_controller, which would take back what the place gives");
+    if (effects_table.has("pick") && read.has("at"))
+        read.fail("at", "must not be there with effects.pick: the task's steps say where each part belongs");
+    else if (!effects_table.has("pick") && !read.has("at"))
+        read.fail("stiffness_N_per_m",
+                  "needs poses `at` where it draws the part to, as no step of an assembly has one");
+}
+
+/// The springs that draw the hand add to the coupling's: the device displays all of them together stably.
+void checkDrawing(const TableReader& effects_table, const TableReader& contact_table, const DeviceDescription* device,
+                  const scene::SceneSpec& scene, Errors& errors) {
+    const scene::Effects& effects = scene.effects;
+    checkGuidance(effects_table, effects.guidance, errors);
+    checkSnap(effects_table, effects.snap, errors);
+    const double share = effects.guidance.share;
+    const bool guides = share > 0.0;
+    if (device == nullptr || contact_table.boolean("allow_unstable") || !(guides || effects.snap.any())) return;
+    const char* effect = guides ? "guidance" : "snap";
+    const TableReader read(*effects_table.node(effect), {guides ? "effects.guidance" : "effects.snap"},
+                           effects_table.pathOf(effect), errors);
+    const char* other = guides && effects.snap.any() ? " and effects.snap" : "";
+    const auto check = [&](const char* contact_key, bool own_key, double coupling, double guide, double snap,
+                           double maximum) {
+        if (!(maximum > 0.0) || coupling + share * guide + snap <= maximum * (1.0 + 1e-9)) return;
+        read.fail(own_key ? contact_key : "stiffness_N_per_m",
+                  fmt::format("with contact.{} = {:.6g}{} it is more than {} displays stably, {:.6g} in all; lower "
+                              "either{}, or contact.allow_unstable = true",
+                              contact_key, coupling, other, device->name, maximum, guides ? " or the share" : ""));
     };
-    const double scale = scene.hand(0).largestScale();
-    check("stiffness_N_per_m", scene.contact.stiffness, guidance.stiffness, device->stable_stiffness_N_per_m / scale);
-    check("rotational_stiffness_Nm_per_rad", scene.contact.rotational_stiffness, guidance.rotational_stiffness,
+    const scene::ContactSpec& c = scene.contact;
+    check("stiffness_N_per_m", true, c.stiffness, effects.guidance.stiffness, effects.snap.stiffness,
+          device->stable_stiffness_N_per_m / scene.hand(0).largestScale());
+    check("rotational_stiffness_Nm_per_rad", guides, c.rotational_stiffness, effects.guidance.rotational_stiffness,
+          effects.snap.stiffness * c.rotational_stiffness / c.stiffness,
           device->stable_rotational_stiffness_Nm_per_rad);
 }
 
@@ -486,6 +529,8 @@ scene::Effects readEffects(const TableReader& read, const DeviceDescription* dev
     if (const Node* node = read.node("guidance"))
         effects.guidance =
             readGuidance(TableReader(*node, {"effects.guidance"}, read.pathOf("guidance"), errors), units, errors);
+    if (const Node* node = read.node("snap"))
+        effects.snap = readSnap(TableReader(*node, {"effects.snap"}, read.pathOf("snap"), errors), units, errors);
     if (const Node* node = read.node("pick")) {
         const TableReader pick(*node, {"effects.pick"}, read.pathOf("pick"), errors);
         effects.pick = {.reach = pick.number("reach_mm"),
@@ -562,7 +607,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     const auto only_device = [&] { return errors.size() == before + of_device; };
     if (only_device()) checkSizes(contact_table, content.scene, geometries);
     checkStability(device_table, contact_table, device, content.scene.contact, content.scene.hand(0));
-    checkGuidance(open("effects"), contact_table, device, content.scene, errors);
+    checkDrawing(open("effects"), contact_table, device, content.scene, errors);
     content.scene.start_gate = readStartGate(open("start_gate"), units, beginsEmpty(content.scene, 0), errors);
     // What only the model itself can judge has no line of its own.
     if (only_device())

@@ -149,6 +149,8 @@ plan::Task readTask(const StudyTables& tables, scene::SceneSpec* scene, Errors& 
     if (!placement && !assembly) task.target = read.text("target");
     if (!pair) task.timeout = read.number("timeout_s");
     if (!pair) task.leave_radius = read.number("leave_radius_mm");
+    if (!assembly && scene->effects.snap.any() && scene->effects.picks())
+        read.fail("type", "must be assembly with effects.snap and effects.pick: its steps say where parts belong");
     if (assembly) {
         task.form = readAssembly(read, tables, unitsOf(tables), *scene, errors);
     } else if (placement) {

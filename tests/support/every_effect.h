@@ -16,13 +16,14 @@ inline scene::Effects everyEffect() {
                      .X_WG = {{rotationFromVector(Vec3(0.2, 0, 0)), Vec3(0.004, 0, 0.008)},
                               {Quat::Identity(), Vec3(-0.004, 0.002, 0.012)}},
                      .lead = 0.003},
+        .snap = {.stiffness = 200.0, .range = 0.02, .X_WG = {{Quat::Identity(), Vec3(0.002, 0.003, 0.012)}}},
         .pick = {},  // no stage: it changes what a hand holds (pick_test.cpp)
         .navigation = {.clutch = {.button = 2},
                        .second_scale = {.button = 3, .scale = 0.5},
                        .drift = {.share = 0.1, .radius = 0.05}},
         .record = true,
     };
-    [[maybe_unused]] const auto& [passivity_damping, transients, weight, viscosity, guidance, pick, navigation,
+    [[maybe_unused]] const auto& [passivity_damping, transients, weight, viscosity, guidance, snap, pick, navigation,
                                   record] = effects;
     return effects;
 }

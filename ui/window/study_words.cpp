@@ -126,6 +126,8 @@ QString orderWord(plan::BlockOrder order) {
     QT_TRANSLATE_NOOP("stages", "effects.viscosity is set: a damper resists the held part's motion"),
     QT_TRANSLATE_NOOP("stages", "guidance"),
     QT_TRANSLATE_NOOP("stages", "effects.guidance has a share above 0: a guide draws the hand along"),
+    QT_TRANSLATE_NOOP("stages", "snap"),
+    QT_TRANSLATE_NOOP("stages", "effects.snap is set: near its place the held part is drawn into it"),
     QT_TRANSLATE_NOOP("stages", "sum of effects"),
     QT_TRANSLATE_NOOP("stages", "an effect adds to the wrench"),
     QT_TRANSLATE_NOOP("stages", "pushes between hands"),

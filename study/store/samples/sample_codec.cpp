@@ -144,13 +144,14 @@ Layout makeEffectsLayout() {
     struct Named {
         const char *key, *what;
     };
-    constexpr std::array<Named, kWrenchEffects> kNamed{{{"transients", "the vibration after impacts"},
-                                                        {"weight", "the held part's weight"},
-                                                        {"viscosity", "the viscosity"},
-                                                        {"guidance", "the guide"}}};
+    constexpr std::array kNamed{Named{"transients", "the vibration after impacts"},
+                                Named{"weight", "the held part's weight"}, Named{"viscosity", "the viscosity"},
+                                Named{"guidance", "the guide"}, Named{"snap", "the snap into its place"}};
+    static_assert(kNamed.size() == kWrenchEffects);
     Layout layout;
     layout.add("effects", "uint32", "1",
-               "Effects that the scene has: bit 0 transients, bit 1 weight, bit 2 viscosity, bit 3 guidance",
+               "Effects that the scene has: bit 0 transients, bit 1 weight, bit 2 viscosity, bit 3 guidance, "
+               "bit 4 snap",
                offsetof(TickRecord, effects));
     layout.add("guided", "float32", "1",
                "Share of its way that the guide has gone, 0 to 1; not a number without a guide",
@@ -165,6 +166,7 @@ Layout makeEffectsLayout() {
                        std::string("Torque that ") + what + " adds, about the held part's origin, likewise",
                        at + 3 * sizeof(float));
     }
+    layout.later_columns = 6;  // snap
     return layout;
 }
 

@@ -254,6 +254,10 @@ constexpr const char* kRevision21 = R"sql(
 -- a scene that asks for it.
 )sql";
 
+constexpr const char* kRevision22 = R"sql(
+-- Chunks of "effects" have six columns more, of snap.
+)sql";
+
 const std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kFirstSchema, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -286,6 +290,8 @@ const std::array kRevisions = {
     Revision{20, "Parts in hands, steps of assemblies", kRevision20, 20},
     // Likewise.
     Revision{21, "What each effect added to the wrench", kRevision21, 21},
+    // A reader from before takes the longer chunks for damage.
+    Revision{22, "What snap added to the wrench", kRevision22, 22},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

@@ -62,6 +62,9 @@ constexpr std::uint64_t kNavigation = 0x1210f7c4ccd5dadcu;
 /// The same with viscosity and a guide.
 constexpr std::uint64_t kGuidance = 0x6e432e1f9b55594eu;
 
+/// The same with a place that draws the part.
+constexpr std::uint64_t kSnap = 0xdcaae9239d113806u;
+
 constexpr const char* kParts = R"(
 [[part]]
 name = "plate"
@@ -156,6 +159,8 @@ TEST(Numerics, EveryOutputBitOfFixedScenesIsThatOfItsNumber) {
     spec.effects.viscosity = {2.0, 1e-3};
     spec.effects.guidance = {.share = 0.5, .X_WG = {Pose{}}, .rotational_stiffness = 2.0};
     EXPECT_EQ(hex(hashOf(spec)), hex(kGuidance)) << "viscosity and guidance" << advice;
+    spec.effects.snap = {.stiffness = 300.0, .range = 0.02, .X_WG = {Pose{}}};
+    EXPECT_EQ(hex(hashOf(spec)), hex(kSnap)) << "snap" << advice;
 }
 
 }  // namespace

@@ -58,6 +58,10 @@ const std::vector<Effect>& effects() {
          [](Spec& s) { s.effects.guidance = every.guidance; },
          {"guidance"},
          [](const Frame& f) -> const Wrench& { return f.of_guidance; }},
+        {"snap",
+         [](Spec& s) { s.effects.snap = every.snap; },
+         {"snap"},
+         [](const Frame& f) -> const Wrench& { return f.of_snap; }},
         {"navigation",
          [](Spec& s) { s.effects.navigation = every.navigation; },
          {"navigation", "sign of contact", "clutched wrench"},
@@ -194,14 +198,14 @@ TEST(EffectSum, NoEffectChangesABitOfAnotherUnlessTheDeclarationsLeadThere) {
         }
     }
     const std::set<std::string> by_hand{"navigation -> transients", "navigation -> weight", "navigation -> viscosity",
-                                        "navigation -> guidance"};
+                                        "navigation -> guidance", "navigation -> snap"};
     auto found = by_hand;
     found.insert("weight -> transients");
     EXPECT_EQ(changes, found);
     // A stage may read what it hands on: from pushes and wrench to the proxy, and by it to the hand's first sample.
     auto declared = found;
-    declared.insert({"transients -> weight", "transients -> viscosity", "transients -> guidance", "weight -> viscosity",
-                     "weight -> guidance"});
+    declared.insert({"transients -> weight", "transients -> viscosity", "transients -> guidance", "transients -> snap",
+                     "weight -> viscosity", "weight -> guidance", "weight -> snap"});
     EXPECT_EQ(edges, declared);
 }
 
@@ -213,6 +217,7 @@ TEST(EffectSum, AddsWhatEachSaysToTheContactAndNothingElse) {
     all.effects.transients = test::everyEffect().transients;
     all.effects.viscosity = test::everyEffect().viscosity;
     all.effects.guidance = test::everyEffect().guidance;
+    all.effects.snap = test::everyEffect().snap;
     all.effects.record = true;
     test::Bench with(all), without(none);
     Random random(4), again(4);
@@ -220,19 +225,22 @@ TEST(EffectSum, AddsWhatEachSaysToTheContactAndNothingElse) {
     for (int i = 0; i < 1500; ++i) {
         const auto a = with.step(readingAt(i, random)), b = without.step(readingAt(i, again));
         const Wrench &t = a.frame.of_transients, &v = a.frame.of_viscosity, &g = a.frame.of_guidance;
-        ASSERT_EQ(a.frame.effects, 0b1101u);
-        EXPECT_LT((a.frame.F_H_W.force - b.frame.F_H_W.force - t.force - v.force - g.force).norm(), 1e-9) << i;
-        EXPECT_LT((a.frame.F_H_W.torque - b.frame.F_H_W.torque - t.torque - v.torque - g.torque).norm(), 1e-9) << i;
+        const Wrench& s = a.frame.of_snap;
+        ASSERT_EQ(a.frame.effects, 0b11101u);
+        const Vec3 force = t.force + v.force + g.force + s.force, torque = t.torque + v.torque + g.torque + s.torque;
+        EXPECT_LT((a.frame.F_H_W.force - b.frame.F_H_W.force - force).norm(), 1e-9) << i;
+        EXPECT_LT((a.frame.F_H_W.torque - b.frame.F_H_W.torque - torque).norm(), 1e-9) << i;
         most = std::max(most, t.force.norm());
         // And records tell it.
         const TickRecord record = tick::makeRecord(i, DeviceReading{}, a);
-        EXPECT_EQ(record.effects, 0b1101u);
+        EXPECT_EQ(record.effects, 0b11101u);
         for (int axis = 0; axis < 3; ++axis) {
             const auto at = static_cast<std::size_t>(axis);
             EXPECT_EQ(record.effect_wrench[0][at], static_cast<float>(t.force[axis]));
             EXPECT_EQ(record.effect_wrench[1][at], 0.0f);
             EXPECT_EQ(record.effect_wrench[2][at + 3], static_cast<float>(v.torque[axis]));
             EXPECT_EQ(record.effect_wrench[3][at], static_cast<float>(g.force[axis]));
+            EXPECT_EQ(record.effect_wrench[4][at + 3], static_cast<float>(s.torque[axis]));
         }
     }
     EXPECT_GT(most, 0.01);

@@ -542,6 +542,53 @@ TEST(SceneReader, RefusesAGuideBesideWhatItConflictsWith) {
     EXPECT_NE(errorsOf(with("1", arm) + no_turn).find("effects.guidance.stiffness_N_per_m"), std::string::npos);
 }
 
+TEST(SceneReader, ReadsSnapAndItsPlaces) {
+    // Truth: closed form: millimetres to metres, each number another one; the default of KEYS.md.
+    const auto scene =
+        read(kParts + "[effects.snap]\nstiffness_N_per_m = 250\nrange_mm = 8\nat = [{ position = [1, 2, -20] }]\n");
+    ASSERT_TRUE(scene) << toString(scene.errors().front());
+    const scene::Snap& snap = scene->effects.snap;
+    EXPECT_EQ(snap.stiffness, 250.0);
+    EXPECT_DOUBLE_EQ(snap.range, 0.008);
+    ASSERT_EQ(snap.X_WG.size(), 1u);
+    EXPECT_LT((snap.X_WG[0].p - Vec3(0.001, 0.002, -0.02)).norm(), 1e-15);
+    const auto defaults = read(kParts + "[effects.snap]\nstiffness_N_per_m = 0\n");
+    ASSERT_TRUE(defaults);
+    EXPECT_DOUBLE_EQ(defaults->effects.snap.range, 0.005);
+    EXPECT_FALSE(defaults->effects.snap.any());
+}
+
+TEST(SceneReader, RefusesSnapBesideWhatItConflictsWith) {
+    // Truth: the rules of KEYS.md. A stiffness of 0 is no snap.
+    const auto with = [](const std::string& stiffness, const std::string& more, bool at = true) {
+        return kParts + more + "[effects.snap]\nstiffness_N_per_m = " + stiffness + "\n" +
+               (at ? "at = [{ position = [0, 0, 30] }]\n" : "");
+    };
+    const std::string passivity = "[effects.passivity_controller]\nmax_damping_Ns_per_m = 20\n";
+    const std::string pick = "[effects.pick]\nreach_mm = 20\n";
+    const auto has = [](const std::string& errors, const char* what) { return errors.find(what) != std::string::npos; };
+    EXPECT_EQ(errorsOf(with("300", "")), "");
+    EXPECT_TRUE(
+        has(errorsOf(with("300", passivity)), "effects.snap.stiffness_N_per_m: 300: must be 0 with effects.pa"));
+    EXPECT_EQ(errorsOf(with("0", passivity)), "");
+    EXPECT_TRUE(has(errorsOf(with("300", "", false)), "effects.snap.stiffness_N_per_m: 300: needs poses `at`"));
+    EXPECT_EQ(errorsOf(with("0", "", false)), "");
+    EXPECT_TRUE(has(errorsOf(with("300", pick)), "effects.snap.at"));
+    EXPECT_TRUE(has(errorsOf(kParts + "[effects.snap]\nrange_mm = 5\n"), "effects.snap.stiffness_N_per_m: required"));
+    // Truth: the device's stable maximum, 4000 N/m of "arm": 3700 + 300 are within it, 3700 + 301 are not, nor with a
+    // guide of 0.5 * 500 beside 51.
+    const std::string arm =
+        "[device]\npreset = \"arm\"\n[contact]\nstiffness_N_per_m = 3700\n"
+        "rotational_stiffness_Nm_per_rad = 0\n";
+    EXPECT_EQ(errorsOf(with("300", arm)), "");
+    EXPECT_TRUE(has(errorsOf(with("301", arm)), "effects.snap.stiffness_N_per_m: 301: with contact.stiffness_N_per_m"));
+    const std::string guide =
+        "[effects.guidance]\nshare = 0.5\nrotational_stiffness_Nm_per_rad = 0\nway = [{ position = [0, 0, 30] }]\n";
+    EXPECT_EQ(errorsOf(with("50", arm + guide)), "");
+    EXPECT_TRUE(has(errorsOf(with("51", arm + guide)), "effects.guidance.stiffness_N_per_m: 500 (default): with"))
+        << errorsOf(with("51", arm + guide));
+}
+
 TEST(SceneReader, ReadsViscosity) {
     // Truth: the rules of KEYS.md.
     const auto scene = read(kParts + "[effects.viscosity]\ndamping_Ns_per_m = 3\n");

@@ -2275,6 +2275,14 @@
         <translation>effects.guidance hat einen Anteil über 0: Eine Führung zieht die Hand mit</translation>
     </message>
     <message>
+        <source>snap</source>
+        <translation>Einrasten</translation>
+    </message>
+    <message>
+        <source>effects.snap is set: near its place the held part is drawn into it</source>
+        <translation>effects.snap ist gesetzt: Nahe seinem Platz wird das gehaltene Teil hineingezogen</translation>
+    </message>
+    <message>
         <source>sum of effects</source>
         <translation>Summe der Effekte</translation>
     </message>

@@ -58,6 +58,27 @@ TEST(SampleCodec, ReadsTimesFromBeforeTheProcessorsWasMeasured) {
     }
 }
 
+TEST(SampleCodec, ReadsEffectsFromBeforeSnap) {
+    // Truth: invariant: the other effects as they were, of snap nothing.
+    const auto records = fake::withEffects(1, fake::makeRecords(1, 50));
+    Chunk old = encodeExtra(Extra::Effects, records);
+    old.data.resize(old.data.size() - 6 * sizeof(float) * records.size());
+    old.crc32 = crc32(old.data);
+    const auto unpacked = unpackExtra(Extra::Effects, packExtra(Extra::Effects, old), encodingText());
+    ASSERT_TRUE(unpacked);
+    std::vector<TickRecord> back;
+    ASSERT_TRUE(decodeTicks(encodeTicks(records), back));
+    ASSERT_TRUE(decodeExtra(Extra::Effects, *unpacked, back));
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        EXPECT_EQ(back[i].effects, records[i].effects);
+        for (const WrenchEffect effect : {WrenchEffect::Transients, WrenchEffect::Guidance}) {
+            const auto e = static_cast<std::size_t>(effect);
+            EXPECT_EQ(back[i].effect_wrench[e], records[i].effect_wrench[e]);
+        }
+        EXPECT_EQ(back[i].effect_wrench[static_cast<std::size_t>(WrenchEffect::Snap)], (std::array<float, 6>{}));
+    }
+}
+
 TEST(SampleCodec, KeepsWhatFewScenesHaveOutOfTheTicksAndInStreamsOfItsOwn) {
     // Truth: invariant: decoding inverts encoding, by tick; ticks of other scenes have nothing to keep.
     const auto plain = fake::makeRecords(1, 50);
