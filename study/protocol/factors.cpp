@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <string_view>
 
 #include "study/protocol/table_reader.h"
 
@@ -132,13 +133,26 @@ std::vector<std::string> splitPath(const std::string& path) {
     return segments;
 }
 
-/// The part of this name among [[part]] tables; nullptr if there is none.
-Node* findPart(Node& scene, const std::string& name) {
-    Node* parts = scene.find("part");
-    if (parts == nullptr) return nullptr;
-    for (Node& part : parts->items) {
-        const Node* part_name = part.find("name");
-        if (part_name != nullptr && part_name->text == name) return &part;
+/// Tables that a path leads into by their names.
+struct NamedTables {
+    std::string_view begin;  // of the path
+    const char* list;        // in its table
+    const char* name_key;
+    const char* other_name_key;  // of a table that has no name
+    const char* missing;
+};
+constexpr NamedTables kParts{"part.", "part", "name", "name", "the scene has no part of this name"};
+constexpr NamedTables kHands{"hand.", "hand", "name", "name", "the scene has no further hand of this name"};
+constexpr NamedTables kSteps{"task.step.", "step", "name", "part", "the task has no step of this name"};
+
+/// The one of this name; nullptr if there is none.
+Node* findNamed(Node& table, const NamedTables& tables, const std::string& name) {
+    Node* list = table.find(tables.list);
+    if (list == nullptr) return nullptr;
+    for (Node& one : list->items) {
+        const Node* own = one.find(tables.name_key);
+        if (own == nullptr) own = one.find(tables.other_name_key);
+        if (own != nullptr && own->text == name) return &one;
     }
     return nullptr;
 }
@@ -195,10 +209,13 @@ void applyOverride(const Override& change, StudyTables& tables, Errors& errors) 
     if (segments[0] == "task" || segments[0] == "feedback" || segments[0] == "secondary") {
         table = segments[0] == "task" ? &tables.task : segments[0] == "feedback" ? &tables.feedback : &tables.secondary;
         next = 1;
-    } else if (segments[0] == "part") {
-        table = segments.size() > 1 ? findPart(tables.scene, segments[1]) : nullptr;
-        if (table == nullptr) return report("the scene has no part of this name");
-        next = 2;
+    }
+    if (change.path == "part") return report(kParts.missing);  // no factor changes what parts there are
+    for (const NamedTables& named : {kParts, kHands, kSteps}) {
+        if (!change.path.starts_with(named.begin)) continue;
+        table = findNamed(*table, named, segments[next + 1]);
+        if (table == nullptr) return report(named.missing);
+        next += 2;
     }
     if (next >= segments.size()) return report("names a table, not a key in it");
     for (; next + 1 < segments.size(); ++next) {

@@ -47,7 +47,7 @@ constexpr std::array kStudyKeys{
     Key{"study", "allocation_blocks", Integer, from(1, 10), "", "1", "Participants are allotted to groups in permuted blocks that hold each group so often."},
 
     Key{"factor", "name", Name, kAny, "", "!", "Name of the factor: a column in every export."},
-    Key{"factor", "key", Text, kAny, "", "(every level has its `set`)", "Key of the scene that varies, such as contact.method or part.plate.shape.bore_diameter; also task.* and feedback.*."},
+    Key{"factor", "key", Text, kAny, "", "(every level has its `set`)", "Key of the scene that varies, such as contact.method or part.plate.shape.bore_diameter; also task.* and feedback.*, a step of an assembly by its name, as in task.step.lid.position_tolerance_mm, and a further hand, as in hand.left.registration.scale."},
     Key{"factor", "kind", Choice, kAny, "within|between|nuisance", "within", "within: everyone sees every level. between: a participant's group sees one. nuisance: its levels are assigned to the other conditions, to each another one in every row of a square, so that nobody sees every combination and all together see each equally often."},
     Key{"factor", "unit", Text, kAny, "", "(none)", "Unit of the labels, for tables."},
     Key{"factor", "levels", Levels, kAny, "", "!", "Levels, at least two: plain values, or tables as below."},

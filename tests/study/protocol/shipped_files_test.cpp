@@ -1,8 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <numeric>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "core/scene/contact_geometry.h"
 #include "devices/simulated/presets.h"
@@ -35,6 +40,47 @@ TEST(ShippedFiles, PegInHoleAsksForConsentInTwoLanguages) {
         }
     }
     EXPECT_EQ(clauses, "taking_part data_use sharing? ");
+}
+
+/// The gearbox with another factor in place of its own.
+Result<plan::StudyPlan> gearboxVarying(const std::string& key, const std::string& levels) {
+    const std::string file = PASSUNG_SOURCE_DIR "/protocols/gearbox_assembly/study.toml";
+    std::ifstream in(file);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::string own = "key = \"contact.stiffness_N_per_m\"\nlevels = [\"0.5 max\", \"max\"]";
+    const std::size_t at = text.find(own);
+    if (at == std::string::npos) throw std::runtime_error(file + ": no such factor");
+    text.replace(at, own.size(), "key = \"" + key + "\"\nlevels = " + levels);
+    return readProtocolText(text, file, knownDevices(), knownMeasures());
+}
+
+TEST(ShippedFiles, AFactorReachesAStepAndAFurtherHandByTheirNames) {
+    // Truth: closed form: each level, in metres, where the file's own lines put the step and the hand.
+    const auto steps = gearboxVarying("task.step.key.position_tolerance_mm", "[1.2, 0.4]");
+    ASSERT_TRUE(steps) << toString(steps.errors()[0]);
+    ASSERT_EQ(steps->conditions.size(), 2u);
+    const auto tolerance = [&](std::size_t condition, std::size_t step) {
+        return steps->conditions[condition].scene.effects.pick.steps.at(step).position_tolerance;
+    };
+    EXPECT_DOUBLE_EQ(tolerance(0, 4), 1.2e-3);
+    EXPECT_DOUBLE_EQ(tolerance(1, 4), 0.4e-3);
+    for (const std::size_t other : {0u, 3u, 5u}) EXPECT_EQ(tolerance(0, other), tolerance(1, other));
+
+    const auto hands = gearboxVarying("hand.left.start_gate.hold_ms", "[200, 350]");
+    ASSERT_TRUE(hands) << toString(hands.errors()[0]);
+    ASSERT_EQ(hands->conditions.size(), 2u);
+    for (const std::size_t i : {0u, 1u}) {
+        EXPECT_EQ(hands->conditions[i].scene.hand(0).start_gate.hold_ticks, 200);
+        EXPECT_EQ(hands->conditions[i].scene.hand(1).start_gate.hold_ticks, i == 0 ? 200 : 350);
+    }
+
+    for (const auto& [key, message] : {std::pair("task.step.lid.position_tolerance_mm", "the task has no step"),
+                                       std::pair("hand.third.registration.scale", "the scene has no further hand"),
+                                       std::pair("task.step.key.position_tolerance", "unknown key")}) {
+        const auto wrong = gearboxVarying(key, "[1, 2]");
+        ASSERT_FALSE(wrong) << key;
+        EXPECT_NE(toString(wrong.errors()[0]).find(message), std::string::npos) << toString(wrong.errors()[0]);
+    }
 }
 
 double radialClearance(const plan::Condition& condition) {
