@@ -8,49 +8,33 @@
 
 namespace passung::scene {
 
-namespace {
-
-/// The turn about z that makes `turn` least, of those that make no difference, and what is then left of it.
-struct Fold {
-    Quat about_z = Quat::Identity();
-    double angle = std::numbers::pi;
-};
-
-Fold bestFold(const Quat& turn, int folds) noexcept {
-    Fold best;
-    for (int i = 0; i < folds; ++i) {
-        const double half = std::numbers::pi * i / folds;
-        const Quat left = turn * Quat(std::cos(half), 0.0, 0.0, -std::sin(half));
-        const double angle = 2.0 * std::atan2(left.vec().norm(), std::abs(left.w()));
-        if (angle < best.angle) best = {Quat(std::cos(half), 0.0, 0.0, std::sin(half)), angle};
-    }
-    return best;
-}
-
-}  // namespace
-
 GoalError goalError(const Pose& X_WP, const Pose& X_WGoal, int folds) noexcept {
     const Quat turn = X_WGoal.q.conjugate() * X_WP.q;
     GoalError error{(X_WP.p - X_WGoal.p).norm(), 0.0};
     if (folds == 0) {
         const Vec3 axis = turn * Vec3::UnitZ();
         error.angle = std::atan2(std::hypot(axis.x(), axis.y()), axis.z());
-    } else {
-        error.angle = bestFold(turn, folds).angle;
+        return error;
+    }
+    error.angle = std::numbers::pi;
+    for (int i = 0; i < folds; ++i) {
+        const double half = std::numbers::pi * i / folds;
+        const Quat left = turn * Quat(std::cos(half), 0.0, 0.0, -std::sin(half));
+        error.angle = std::min(error.angle, 2.0 * std::atan2(left.vec().norm(), std::abs(left.w())));
     }
     return error;
 }
 
 Pose nearestGoal(const Pose& X_WP, const Pose& X_WGoal, int folds) noexcept {
-    const Quat turn = X_WGoal.q.conjugate() * X_WP.q;
-    if (folds > 0) return {X_WGoal.q * bestFold(turn, folds).about_z, X_WGoal.p};
-    // The part's z axis, seen from the goal, is laid on z: about what is across both.
-    const Vec3 axis = turn * Vec3::UnitZ();
-    const double across = std::hypot(axis.x(), axis.y());
-    if (!(across > 0.0)) return {X_WP.q, X_WGoal.p};
-    const double angle = std::atan2(across, axis.z());
-    const Vec3 back = angle / across * Vec3(axis.y(), -axis.x(), 0.0);
-    return {X_WGoal.q * rotationFromVector(back) * turn, X_WGoal.p};
+    if (folds == 1) return X_WGoal;
+    // |w cos + z sin| of the turn that is left is largest at this angle: the twist of what is between the two.
+    const Quat between = X_WGoal.q.conjugate() * X_WP.q;
+    double angle = 2.0 * std::atan2(between.z(), between.w());
+    if (folds > 1) {
+        const double part = 2.0 * std::numbers::pi / folds;
+        angle = part * std::round(angle / part);
+    }
+    return {X_WGoal.q * rotationFromVector(Vec3(0.0, 0.0, angle)), X_WGoal.p};
 }
 
 Pose goalOf(const AssemblyStep& step, std::span<const Pose> X_WP) noexcept {

@@ -206,7 +206,7 @@ HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size
     }
     if (model.effects.guidance.share > 0.0)
         model.way = GuideWay(model.X_WG_start, model.effects.guidance.X_WG, model.metric_radius);
-    if (model.effects.snap.any() && model.hasPart()) addSnapPlaces(model, spec, hand);
+    if (model.effects.snap.any() && model.hasPart() && !follows) addSnapPlaces(model, spec, hand);
     addStages(model, AllStages{});
     return model;
 }

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <numbers>
 #include <variant>
 
 #include "study/plan/scene_parts.h"
@@ -20,22 +18,6 @@ std::vector<StandingPart> othersThan(std::size_t part, const std::vector<Pose>& 
     return standing;
 }
 
-Pose turnedAboutZ(const Pose& X, double angle) { return {X.q * rotationFromVector(Vec3(0.0, 0.0, angle)), X.p}; }
-
-/// Of the poses that are one goal, turned about the part's z axis, that of the least turn from `X_from`. `folds` as in
-/// scene::AssemblyStep.
-Pose nearestGoal(const Pose& X_goal, const Pose& X_from, int folds) {
-    if (folds == 1) return X_goal;
-    // |w cos + z sin| of the turn that is left is largest at this angle: the twist of what is between the two.
-    const Quat between = X_goal.q.conjugate() * X_from.q;
-    double angle = 2.0 * std::atan2(between.z(), between.w());
-    if (folds > 1) {
-        const double part = 2.0 * std::numbers::pi / folds;
-        angle = part * std::round(angle / part);
-    }
-    return turnedAboutZ(X_goal, angle);
-}
-
 std::vector<PathProblem> assemblyProblems(const scene::SceneSpec& scene) {
     std::vector<PathProblem> problems;
     std::vector<Pose> X_WP;
@@ -44,7 +26,7 @@ std::vector<PathProblem> assemblyProblems(const scene::SceneSpec& scene) {
     for (const std::size_t i : scene::orderOf(steps)) {
         const scene::AssemblyStep& step = steps[i];
         const Pose X_start = X_WP[step.part];
-        const Pose X_goal = nearestGoal(scene::goalOf(step, X_WP), X_start, step.folds);
+        const Pose X_goal = scene::nearestGoal(X_start, scene::goalOf(step, X_WP), step.folds);
         problems.push_back({scene.parts[step.part].name, step.part, X_start, X_goal, othersThan(step.part, X_WP)});
         X_WP[step.part] = X_goal;
     }

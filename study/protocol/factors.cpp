@@ -210,11 +210,12 @@ void applyOverride(const Override& change, StudyTables& tables, Errors& errors) 
         table = segments[0] == "task" ? &tables.task : segments[0] == "feedback" ? &tables.feedback : &tables.secondary;
         next = 1;
     }
-    if (change.path == "part") return report(kParts.missing);  // no factor changes what parts there are
+    if (change.path == "part") return report("names all parts, not a key of one");
     for (const NamedTables& named : {kParts, kHands, kSteps}) {
         if (!change.path.starts_with(named.begin)) continue;
         table = findNamed(*table, named, segments[next + 1]);
         if (table == nullptr) return report(named.missing);
+        if (named.begin != kParts.begin && segments.back() == "name") return report("is what factors find it by");
         next += 2;
     }
     if (next >= segments.size()) return report("names a table, not a key in it");

@@ -411,7 +411,8 @@ void readOtherHands(const TableReader& read, std::span<const std::string> names,
             hand.navigation = readNavigation(own, device, errors);
         }
         checkStability(device_table, contact_table, device, content.scene.contact, hand);
-        checkOtherStiffness(hand_table, contact_table, device, content.scene.contact, content.scene.effects.snap, hand);
+        checkOtherStiffness(hand_table, contact_table, device, content.scene.contact,
+                            content.scene.effects.picks() ? content.scene.effects.snap : scene::Snap{}, hand);
         content.other_devices.push_back(device_table.text("preset"));
         content.scene.other_hands.push_back(std::move(hand));
     }
@@ -457,7 +458,8 @@ void checkGuidance(const TableReader& effects_table, const scene::Guidance& guid
 }
 
 /// Snap likewise.
-void checkSnap(const TableReader& effects_table, const scene::Snap& snap, Errors& errors) {
+void checkSnap(const TableReader& effects_table, const scene::SceneSpec& scene, Errors& errors) {
+    const scene::Snap& snap = scene.effects.snap;
     if (!snap.any()) return;
     const TableReader read(*effects_table.node("snap"), {"effects.snap"}, effects_table.pathOf("snap"), errors);
     if (effects_table.has("passivity_controller"))
@@ -468,14 +470,21 @@ void checkSnap(const TableReader& effects_table, const scene::Snap& snap, Errors
     else if (!effects_table.has("pick") && !read.has("at"))
         read.fail("stiffness_N_per_m",
                   "needs poses `at` where it draws the part to, as no step of an assembly has one");
+    const double turn = std::sqrt(scene.contact.rotational_stiffness / scene.contact.stiffness);
+    for (std::size_t i = 0; i < snap.X_WG.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            const Pose &a = snap.X_WG[i], &b = snap.X_WG[j];
+            if (std::hypot((a.p - b.p).norm(), turn * a.q.angularDistance(b.q)) < 2.0 * snap.range)
+                return read.fail("at", "has two places whose ranges meet, so that both draw: lower range_mm");
+        }
 }
 
-/// The springs that draw the hand add to the coupling's: the device displays all of them together stably.
+/// The springs that draw the hand add to the coupling's: the device has to display all of them together stably.
 void checkDrawing(const TableReader& effects_table, const TableReader& contact_table, const DeviceDescription* device,
                   const scene::SceneSpec& scene, Errors& errors) {
     const scene::Effects& effects = scene.effects;
     checkGuidance(effects_table, effects.guidance, errors);
-    checkSnap(effects_table, effects.snap, errors);
+    checkSnap(effects_table, scene, errors);
     const double share = effects.guidance.share;
     const bool guides = share > 0.0;
     if (device == nullptr || contact_table.boolean("allow_unstable") || !(guides || effects.snap.any())) return;

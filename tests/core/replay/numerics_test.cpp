@@ -63,7 +63,7 @@ constexpr std::uint64_t kNavigation = 0x1210f7c4ccd5dadcu;
 constexpr std::uint64_t kGuidance = 0x6e432e1f9b55594eu;
 
 /// The same with a place that draws the part.
-constexpr std::uint64_t kSnap = 0xdcaae9239d113806u;
+constexpr std::uint64_t kSnap = 0xa448e8ff80ab833du;
 
 constexpr const char* kParts = R"(
 [[part]]

@@ -447,6 +447,21 @@ TEST_P(OfEachWay, TwoSpringsHoldOnePartWhereTheyBalance) {
     }
 }
 
+TEST_P(OfEachWay, OfTwoHandsOnAPartThatBelongsSomewhereTheFirstIsDrawn) {
+    // Truth: the effect's own head comment; that both hands go on for 200 ticks.
+    auto spec = rodsOnTable(GetParam(), {lying(0, 0), lying(0.1, 0.1)}, 2);
+    spec.effects.snap = {.stiffness = 200.0, .range = 0.02};
+    spec.effects.pick.steps = {{.part = 1, .into = 0, .X_IGoal = at(0, 0, 0.065)}};
+    Together pair(spec, Vec3(-0.03, 0, 0.004), Vec3(0.035, 0.003, 0), 0.05);
+    pair.X[0].p += Vec3(-0.002, 0, 0);
+    pair.go(200);
+    const auto &first = pair.hands.output(0).frame, &second = pair.hands.output(1).frame;
+    EXPECT_EQ(pair.hands.output(1).held, 1);
+    EXPECT_GT(first.of_snap.force.norm(), 0.1);
+    EXPECT_EQ(second.of_snap.force, Vec3::Zero());
+    EXPECT_TRUE(second.F_H_W.force.allFinite());
+}
+
 TEST_P(OfEachWay, TwoSpringsPressOnePartAgainstAWall) {
     // Truth: closed form. Two grips at ±a from the middle, let down by d_1 and d_2 below where the rod lies: the table
     // bears K (d_1 + d_2), each hand feels its own; the rod lies flat. Turned about the line between the grips by φ in

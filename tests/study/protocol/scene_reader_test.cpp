@@ -584,6 +584,21 @@ TEST(SceneReader, RefusesSnapBesideWhatItConflictsWith) {
     EXPECT_TRUE(has(errorsOf(with("301", arm)), "effects.snap.stiffness_N_per_m: 301: with contact.stiffness_N_per_m"));
     const std::string guide =
         "[effects.guidance]\nshare = 0.5\nrotational_stiffness_Nm_per_rad = 0\nway = [{ position = [0, 0, 30] }]\n";
+    // Against turning 300/3700 of the coupling's 7.5 are 0.61: 8 N·m/rad are too little.
+    const std::string turning =
+        "[device]\npreset = \"arm\"\n[contact]\nstiffness_N_per_m = 3700\n"
+        "rotational_stiffness_Nm_per_rad = ";
+    EXPECT_EQ(errorsOf(with("300", turning + "7.3\n")), "");
+    EXPECT_TRUE(has(errorsOf(with("300", turning + "7.5\n")), "with contact.rotational_stiffness_Nm_per_rad = 7.5"));
+    // Two places 10 mm apart, each with a range of 5 mm, and a little less.
+    const auto two = [&](const char* z) {
+        return errorsOf(kParts +
+                        "[effects.snap]\nstiffness_N_per_m = 300\nat = [{ position = [0, 0, 30] }, "
+                        "{ position = [0, 0, " +
+                        std::string(z) + "] }]\n");
+    };
+    EXPECT_EQ(two("40.001"), "");
+    EXPECT_TRUE(has(two("39.9"), "effects.snap.at: {...}, {...}: has two places whose ranges meet")) << two("39.9");
     EXPECT_EQ(errorsOf(with("50", arm + guide)), "");
     EXPECT_TRUE(has(errorsOf(with("51", arm + guide)), "effects.guidance.stiffness_N_per_m: 500 (default): with"))
         << errorsOf(with("51", arm + guide));

@@ -71,7 +71,9 @@ TEST(SampleCodec, ReadsEffectsFromBeforeSnap) {
     ASSERT_TRUE(decodeExtra(Extra::Effects, *unpacked, back));
     for (std::size_t i = 0; i < records.size(); ++i) {
         EXPECT_EQ(back[i].effects, records[i].effects);
-        for (const WrenchEffect effect : {WrenchEffect::Transients, WrenchEffect::Guidance}) {
+        EXPECT_EQ(back[i].guided, records[i].guided);
+        for (const WrenchEffect effect :
+             {WrenchEffect::Transients, WrenchEffect::Weight, WrenchEffect::Viscosity, WrenchEffect::Guidance}) {
             const auto e = static_cast<std::size_t>(effect);
             EXPECT_EQ(back[i].effect_wrench[e], records[i].effect_wrench[e]);
         }
