@@ -598,7 +598,7 @@ TEST(SceneReader, RefusesSnapBesideWhatItConflictsWith) {
                         std::string(z) + "] }]\n");
     };
     EXPECT_EQ(two("40.001"), "");
-    EXPECT_TRUE(has(two("39.9"), "effects.snap.at: {...}, {...}: has two places whose ranges meet")) << two("39.9");
+    EXPECT_TRUE(has(two("39.9"), "effects.snap.at: [{...}, {...}]: has two places whose ranges meet")) << two("39.9");
     EXPECT_EQ(errorsOf(with("50", arm + guide)), "");
     EXPECT_TRUE(has(errorsOf(with("51", arm + guide)), "effects.guidance.stiffness_N_per_m: 500 (default): with"))
         << errorsOf(with("51", arm + guide));
