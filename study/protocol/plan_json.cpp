@@ -11,6 +11,14 @@
 namespace passung::protocol {
 namespace {
 
+template <class T, class Function>
+std::string listOf(const std::vector<T>& items, Function json) {
+    std::vector<std::string> texts;
+    texts.reserve(items.size());
+    for (const auto& item : items) texts.push_back(json(item));
+    return jsonList(texts);
+}
+
 std::string poseJson(const Pose& pose) {
     return JsonObject()
         .json("position_m", jsonVector(pose.p))
@@ -153,16 +161,10 @@ std::string otherHandsJson(const plan::Condition& condition) {
     return jsonList(hands);
 }
 
-std::string posesJson(const std::vector<Pose>& poses) {
-    std::vector<std::string> list;
-    for (const Pose& pose : poses) list.push_back(poseJson(pose));
-    return jsonList(list);
-}
-
 std::string guidanceJson(const scene::Guidance& guidance) {
     return JsonObject()
         .number("share", guidance.share)
-        .json("way", posesJson(guidance.X_WG))
+        .json("way", listOf(guidance.X_WG, poseJson))
         .number("speed_m_per_s", guidance.speed)
         .number("lead_m", guidance.lead)
         .number("stiffness_N_per_m", guidance.stiffness)
@@ -194,9 +196,7 @@ std::string pickJson(const scene::Pick& pick) {
         .integer("button", pick.button)
         .text("closed", pick.on_press ? "on_press" : "while_down")
         .text("let_go", pick.locks ? "lock" : "leave");
-    std::vector<std::string> steps;
-    for (const scene::AssemblyStep& step : pick.steps) steps.push_back(stepJson(step));
-    if (!steps.empty()) json.json("steps", jsonList(steps));
+    if (!pick.steps.empty()) json.json("steps", listOf(pick.steps, stepJson));
     if (pick.undo_button > 0) json.integer("undo_button", pick.undo_button);
     return json.str();
 }
@@ -222,7 +222,7 @@ std::string effectsJson(const scene::Effects& effects) {
         json.json("snap", JsonObject()
                               .number("stiffness_N_per_m", effects.snap.stiffness)
                               .number("range_m", effects.snap.range)
-                              .json("at", posesJson(effects.snap.X_WG))
+                              .json("at", listOf(effects.snap.X_WG, poseJson))
                               .str());
     if (effects.record) json.boolean("record", true);
     if (effects.picks()) json.json("pick", pickJson(effects.pick));
@@ -458,13 +458,6 @@ std::string analysisJson(const plan::Analysis& analysis) {
         .text("block", analysis.block)
         .text("staircase", analysis.staircase)
         .str();
-}
-
-template <class T, class Function>
-std::string listOf(const std::vector<T>& items, Function json) {
-    std::vector<std::string> texts;
-    for (const auto& item : items) texts.push_back(json(item));
-    return jsonList(texts);
 }
 
 }  // namespace
