@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <chrono>
 #include <cstdlib>
+#include <stdexcept>
 #include <thread>
 
 #include "tests/ui/cli/program.h"
@@ -130,14 +132,19 @@ answers = ["NA", 3]
 scores = { number = 3 }
 )");
         std::string study = readText(folder_ / "study.toml");
-        study.replace(study.find("hold_s = 0.05"), 13, "hold_s = 3");  // a command comes while a trial runs
+        // A command comes while a trial runs.
+        study.replace(study.find("hold_s = 0.05"), 13, "hold_s = 3");
+        study.replace(study.find("\"task.timeout_s\" = 0.4"), 21, "\"task.timeout_s\" = 6");
         writeText(folder_ / "study.toml",
                   study + "[[questionnaire]]\nfile = \"ask.toml\"\nmoment = \"session_start\"\n");
     }
     void tell(std::vector<std::string> words) const {
         words.insert(words.begin(), "session");
         words.insert(words.begin() + 2, folder_ / "s.db");
-        while (runProgram(console_.path(), words).exit_code != 0) std::this_thread::yield();
+        const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+        for (Ended told = runProgram(console_.path(), words); told.exit_code != 0;
+             told = runProgram(console_.path(), words))
+            if (std::chrono::steady_clock::now() > end) throw std::runtime_error(words[1] + ": " + told.err);
     }
 
     TempFolder console_;
