@@ -137,20 +137,19 @@ std::vector<std::string> splitPath(const std::string& path) {
 struct NamedTables {
     std::string_view begin;  // of the path
     const char* list;        // in its table
-    const char* name_key;
-    const char* other_name_key;  // of a table that has no name
     const char* missing;
+    const char* other_name_key = "name";  // of a table that has no name
 };
-constexpr NamedTables kParts{"part.", "part", "name", "name", "the scene has no part of this name"};
-constexpr NamedTables kHands{"hand.", "hand", "name", "name", "the scene has no further hand of this name"};
-constexpr NamedTables kSteps{"task.step.", "step", "name", "part", "the task has no step of this name"};
+constexpr NamedTables kParts{"part.", "part", "the scene has no part of this name"};
+constexpr NamedTables kHands{"hand.", "hand", "the scene has no further hand of this name"};
+constexpr NamedTables kSteps{"task.step.", "step", "the task has no step of this name", "part"};
 
 /// The one of this name; nullptr if there is none.
 Node* findNamed(Node& table, const NamedTables& tables, const std::string& name) {
     Node* list = table.find(tables.list);
     if (list == nullptr) return nullptr;
     for (Node& one : list->items) {
-        const Node* own = one.find(tables.name_key);
+        const Node* own = one.find("name");
         if (own == nullptr) own = one.find(tables.other_name_key);
         if (own != nullptr && own->text == name) return &one;
     }
