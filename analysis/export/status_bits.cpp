@@ -48,7 +48,7 @@ const char* statusBitMeaning(TickStatus bit) {
         case kWeighed:
             return "the held part's weight is in the force (nothing to worry about)";
         case kAidedInAir:
-            return "viscosity, a guide or snap is in the force (nothing to worry about)";
+            return "viscosity, a guide, snap, inertia or keeping apart is in the force (nothing to worry about)";
     }
     return nullptr;
 }

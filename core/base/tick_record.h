@@ -33,7 +33,7 @@ enum TickStatus : std::uint32_t {
     kSuspended = 1u << 18,        // the tick's work was not done: what is left of it goes on in the next tick
     kLedOut = 1u << 19,           // the held part was put where it overlaps: it is led out, and no contact counts
     kWeighed = 1u << 20,          // the held part's weight is in the wrench: a force is no sign of contact
-    kAidedInAir = 1u << 21,       // viscosity, a guide or snap may be in it: likewise
+    kAidedInAir = 1u << 21,       // an effect that acts in the air (effect_sum.h) may be in it: likewise
 };
 
 /// What a device reports for one tick.
@@ -48,8 +48,8 @@ struct DeviceReading {
 };
 
 /// What may add to the wrench beside contact, in the order in which it does (core/tick/effect_sum.h).
-enum class WrenchEffect { Transients, Weight, Viscosity, Guidance, Snap };
-inline constexpr std::size_t kWrenchEffects = 5;
+enum class WrenchEffect { Transients, Weight, Viscosity, Guidance, Snap, Inertia, KeepApart };
+inline constexpr std::size_t kWrenchEffects = 7;
 
 inline constexpr std::int32_t kNoPart = -1, kPartNotTold = -2;
 

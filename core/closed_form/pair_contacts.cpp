@@ -84,7 +84,13 @@ motion::Motion slopeBy(const LineView& view, const Vec3& lever, const Vec3& grad
 
 /// Without its centre: levers are about `origin`.
 motion::PlacedMetric metricOf(const LineView& view, const motion::Metric& metric) noexcept {
-    return {.radius = metric.radius, .centre = Vec3::Zero(), .across = metric.across, .axis = view.axis};
+    motion::PlacedMetric placed;
+    placed.radius = metric.radius;
+    placed.across = metric.across;
+    placed.axis = view.axis;
+    // S is the lump's part: the held one, or that in which the line's is turned by line_q.
+    if (metric.whole) metric.turnInto(placed, view.sign > 0.0 ? Mat3(view.R_WS * view.line_q) : view.R_WS);
+    return placed;
 }
 
 /// To world axes and lengths.

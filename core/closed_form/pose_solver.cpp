@@ -276,7 +276,7 @@ motion::Motion PoseSolver::offRidge(const motion::Motion& way, const PoseMemory&
 }
 
 ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most,
-                                  const motion::TwoSprings* two_springs) noexcept {
+                                  const motion::Pull* pull) noexcept {
     ConstrainedPose result{.X_WG = X_WG};
     way_.clear();
     Pose X = X_WG;
@@ -284,8 +284,7 @@ ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory
     double astray = 0.0;                                    // of the motions since the last pose that counts
     bool left = false;                                      // a ridge
     for (int i = 0;; ++i) {
-        const motion::Motion wanted =
-            two_springs != nullptr ? two_springs->wantedAt(metric_, X) : metric_.between(X, X_WH);
+        const motion::Motion wanted = pull != nullptr ? pull->wantedAt(metric_, X) : metric_.between(X, X_WH);
         find(X, reachFor(wanted));
         if (i == 0) most = std::min(most, most_looks_);
         if (i == 0) allowed_ = std::max(0.0, overlap_ - kRepair);

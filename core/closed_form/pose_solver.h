@@ -8,6 +8,7 @@
 #include "core/closed_form/pair_contacts.h"
 #include "core/geometry/near_list.h"
 #include "core/motion/active_set.h"
+#include "core/motion/pull.h"
 
 namespace passung::closed_form {
 
@@ -87,10 +88,10 @@ public:
     /// without one all are near.
     explicit PoseSolver(std::span<const SolidPair> pairs, geometry::NearList near = {});
 
-    /// In at most `most` looks, and no more than kMostMeetings lets it have. `two_springs`: what two hands draw the
+    /// In at most `most` looks, and no more than kMostMeetings lets it have. `pull`: what draws the
     /// part by, with `X_WH` where it would rest. rt-safe.
     ConstrainedPose solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most = kMostLooks,
-                          const motion::TwoSprings* two_springs = nullptr) noexcept;
+                          const motion::Pull* pull = nullptr) noexcept;
 
     /// Obstacle `i` is at `X_WO` from now on. rt-safe.
     void place(std::size_t i, const Pose& X_WO) noexcept {

@@ -72,7 +72,7 @@ Result<Scene> buildScene(const SceneSpec& spec, PartCache& cache) {
         const bool obstacle = !part.held || part.pickable || spec.handCount() > 1;
         auto built = cache.get(part, {.field = fields && (obstacle || spec.contact.two_way),
                                       .shell = fields && (part.moves() || spec.contact.two_way),
-                                      .clusters = geometry == Geometry::Surface,
+                                      .clusters = geometry == Geometry::Surface || (part.moves() && spec.effects.keep_apart.any()),
                                       .tolerance = spec.contact.tolerance,
                                       .cell = spec.contact.cell,
                                       .spacing = spec.contact.spacing});

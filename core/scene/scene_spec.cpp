@@ -87,6 +87,21 @@ void checkSnap(const SceneSpec& scene, Checks& check) {
                   "must have a pose where no part is picked up");
 }
 
+void checkInertia(const SceneSpec& scene, Checks& check) {
+    const double scale = scene.effects.inertia.scale;
+    check.notNegative("effects: inertia: scale", scale);
+    check.require(!(scale > 0.0) || scene.contact.method != ContactMethod::Penalty, "effects: inertia: scale", scale,
+                  "must be 0 with the penalty: no proxy moves on by itself");
+}
+
+void checkKeepApart(const SceneSpec& scene, Checks& check) {
+    const KeepApart& apart = scene.effects.keep_apart;
+    check.notNegative("effects: keep apart: stiffness", apart.stiffness);
+    check.positive("effects: keep apart: range", apart.range);
+    check.require(!apart.any() || scene.handCount() > 1, "effects: keep apart: stiffness", apart.stiffness,
+                  "must be 0 with one hand");
+}
+
 }  // namespace
 
 std::size_t SceneSpec::heldBy(std::size_t i) const {
@@ -200,6 +215,8 @@ std::vector<Error> SceneSpec::validate() const {
     check.notNegative("effects: viscosity: rotational damping", effects.viscosity.rotational_damping);
     checkGuidance(*this, check);
     checkSnap(*this, check);
+    checkInertia(*this, check);
+    checkKeepApart(*this, check);
     check.notNegative("contact: proxy filter", contact.proxy_filter);
     for (std::size_t i = 0; i < handCount(); ++i) check.device(hand(i));
     return check.errors;

@@ -191,6 +191,21 @@ struct Snap {
     bool any() const noexcept { return stiffness > 0.0; }
 };
 
+/// The held part keeps moving: core/tick/inertia.h.
+struct Inertia {
+    double scale = 0.0;  // of its own mass and moments, ≥ 0; 0: none
+
+    bool any() const noexcept { return scale > 0.0; }
+};
+
+/// Parts in two hands push each other away before they touch (core/tick/keep_apart.h).
+struct KeepApart {
+    double stiffness = 0.0;  // [N/m], ≥ 0; 0: none
+    double range = 0.02;     // between their surfaces [m], > 0
+
+    bool any() const noexcept { return stiffness > 0.0; }
+};
+
 /// Effects beyond contact; what is 0 is not built.
 struct Effects {
     double passivity_damping = 0.0;  // most of the passivity controller's damper [N·s/m], ≥ 0; 0: no controller
@@ -199,6 +214,8 @@ struct Effects {
     Viscosity viscosity = {};
     Guidance guidance = {};  // of the first hand
     Snap snap = {};
+    Inertia inertia = {};
+    KeepApart keep_apart = {};
     Pick pick;
     Navigation navigation = {};  // of the first hand
     bool record = false;         // what each of them adds to the wrench is told of every tick

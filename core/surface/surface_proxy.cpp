@@ -282,8 +282,7 @@ bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
     refreshRows();
     if (tick_.looks == 0) adaptGap();
     ease_ = tick_.looks == 0 ? kEase : 0.0;
-    wanted_ =
-        two_springs_ != nullptr ? two_springs_->wantedAt(settings_.metric, X_) : settings_.metric.between(X_, X_WH_);
+    wanted_ = pull_ != nullptr ? pull_->wantedAt(settings_.metric, X_) : settings_.metric.between(X_, X_WH_);
     if (!(most_in_tick_ - way_in_tick_ > kStill)) return false;
     if (overlaps_) {
         wanted_ = wayOut();
@@ -447,8 +446,8 @@ bool SurfaceProxy::dropsGhosts() noexcept {
     return any;
 }
 
-const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH, const motion::TwoSprings* two_springs) noexcept {
-    two_springs_ = two_springs;
+const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH, const motion::Pull* pull) noexcept {
+    pull_ = pull;
     tick_ = {};
     tick_.work = std::min(std::exchange(owed_, 0), budget_ / 2);
     chain_count_ = 0;

@@ -10,6 +10,7 @@
 #include "core/contact/contact_query.h"
 #include "core/motion/constrained_motion.h"
 #include "core/motion/metric.h"
+#include "core/motion/pull.h"
 #include "core/surface/contact_row.h"
 #include "core/surface/pair_forest.h"
 #include "core/surface/surface_body.h"
@@ -130,7 +131,7 @@ public:
 
     /// Follows the hand, or what two hands draw the part by, with `X_WH` where it would rest. rt-safe, bounded by the
     /// budget.
-    const SurfaceTick& advance(const Pose& X_WH, const motion::TwoSprings* two_springs = nullptr) noexcept;
+    const SurfaceTick& advance(const Pose& X_WH, const motion::Pull* pull = nullptr) noexcept;
 
     /// Rows that hold the pose: those with `push` > 0. Each is of a face of its `body`, in that frame.
     std::span<const ContactRow> rows() const noexcept { return {rows_.data(), row_count_}; }
@@ -275,9 +276,9 @@ private:
     bool pressed_ = false, let_go_ = false;  // by another hand's part; and until it is where it is asked to go
 
     // Of the tick.
-    const motion::TwoSprings* two_springs_ = nullptr;  // where two hands hold the part
-    double trust_ = 0.0, way_in_tick_ = 0.0;           // [m]
-    double most_in_tick_ = 0.0, most_held_ = 0.0;      // of the way, and where rows hold the pose [m]
+    const motion::Pull* pull_ = nullptr;           // where it is more than one hand's spring
+    double trust_ = 0.0, way_in_tick_ = 0.0;       // [m]
+    double most_in_tick_ = 0.0, most_held_ = 0.0;  // of the way, and where rows hold the pose [m]
 
     // Of the look that was begun.
     Phase phase_ = Phase::Idle;

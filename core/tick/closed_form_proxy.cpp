@@ -17,7 +17,7 @@ void noteHold(const HandModel& model, const HeldTarget& target, const Proxy& pro
     for (const closed_form::HeldContact& held : hold.all()) {
         const Vec3 push = held.push * held.contact.normal;
         addPush(model, target, proxy.X_WG, held.contact.point, push,
-                model.contact.stiffness * target.springs * push.norm(), pushes.pushes[held.pair]);
+                model.contact.stiffness * target.stiffness * push.norm(), pushes.pushes[held.pair]);
     }
 }
 
@@ -68,7 +68,7 @@ void followInClosedForm(const HandModel& model, const HandSample& hand, const He
         held.hold = {};
     }
     const closed_form::ConstrainedPose found =
-        memory.solver.solve(proxy.X_WG, target.X_WT, held.hold, mostLooks(model, memory), target.twoSprings());
+        memory.solver.solve(proxy.X_WG, target.X_WT, held.hold, mostLooks(model, memory), target.pullBeside());
     proxy.X_WG = found.X_WG;
     proxy.clearance = -found.overlap;
     note(found, report);

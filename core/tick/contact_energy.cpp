@@ -19,9 +19,8 @@ void add(ObstaclePush& push, const Wrench& more, double pressure) noexcept {
 class CouplingPush {
 public:
     CouplingPush(const HandModel& model, const HeldTarget& target, const Pose& X_WG) noexcept
-        : K_(target.springs == 1 ? model.contact.stiffness : 0.0),
-          turn_(target.springs == 1 ? model.contact.rotational_stiffness / (target.metric.radius * target.metric.radius)
-                                    : 0.0),
+        : K_(target.springs == 1 ? model.contact.stiffness * target.stiffness : 0.0),
+          turn_(target.springs == 1 ? turnOf(model, target) : 0.0),
           centre_(target.metric.centre(X_WG)),
           lever_(centre_ - X_WG.p) {}
 
@@ -32,6 +31,13 @@ public:
     }
 
 private:
+    /// Of what contacts turn the part by, over the levers' share: shown as far as the coupling turns the hand.
+    static double turnOf(const HandModel& model, const HeldTarget& target) noexcept {
+        const double turns = model.contact.rotational_stiffness;
+        if (!target.isPulled()) return turns / (target.metric.radius * target.metric.radius);
+        return turns > 0.0 ? model.contact.stiffness * target.stiffness : 0.0;
+    }
+
     double K_, turn_;
     Vec3 centre_, lever_;
 };
@@ -55,7 +61,7 @@ void notePushes(const HandModel& model, const HeldTarget& target, const Proxy& p
         const motion::ActiveContact& held = motion.active_contacts[static_cast<std::size_t>(i)];
         const contact::ContactPoint& contact = proxy.manifold[held.contact];
         add(pushes.pushes[contact.obstacle], push.at(contact.position, held.push * contact.gradient.normalized()),
-            model.contact.stiffness * target.springs * held.push);
+            model.contact.stiffness * target.stiffness * held.push);
     }
     for (int p = 0; p < rubbing.count; ++p) {
         const motion::FrictionPatch& patch = rubbing.patch[static_cast<std::size_t>(p)];

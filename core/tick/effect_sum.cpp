@@ -4,7 +4,8 @@ namespace passung::tick {
 
 void addEffects(const HandModel& model, const TransientsShare& transients, const WeightShare& weight,
                 const ViscosityShare& viscosity, const GuidanceShare& guidance, const SnapShare& snap,
-                HandWrench& wrench, EffectRecord& record, Report& report) noexcept {
+                const InertiaShare& inertia, const KeepApartShare& apart, HandWrench& wrench, EffectRecord& record,
+                Report& report) noexcept {
     const std::uint32_t has = model.wrenchEffects();
     const auto add = [&](WrenchEffect effect, const Wrench& more, std::uint32_t status) {
         if ((has >> static_cast<unsigned>(effect) & 1u) == 0) return;
@@ -17,6 +18,8 @@ void addEffects(const HandModel& model, const TransientsShare& transients, const
     add(WrenchEffect::Viscosity, viscosity.of_viscosity, kAidedInAir);
     add(WrenchEffect::Guidance, guidance.of_guidance, kAidedInAir);
     add(WrenchEffect::Snap, snap.of_snap, kAidedInAir);
+    add(WrenchEffect::Inertia, inertia.of_inertia, kAidedInAir);
+    add(WrenchEffect::KeepApart, apart.of_keep_apart, kAidedInAir);
     if (model.effects.record) record.effects = has;
 }
 

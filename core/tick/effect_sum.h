@@ -6,19 +6,20 @@
 namespace passung::tick {
 
 /// The one place where effects come into the wrench, in this order: contact, transients, weight, viscosity, guidance,
-/// snap.
+/// snap, inertia, keeping apart.
 /// Each is computed from what its own stage declares, and says what it adds in a part of the frame of its own; those
 /// that the scene does not have add nothing, not even a zero. Records tell them where the scene asks for it, and always
 /// that some of the force is there in the air too (kAidedInAir).
 ///   One more effect changes no bit of what another one adds, but navigation of all of them, by where the hand is, and
-/// weight of transients, by where the proxy rests. By what the stages declare transients and weight might lead to
-/// others too, by pushes and proxy to the hand before its first sample; viscosity, guidance and snap lead to none
-/// (effect_sum_test.cpp, all pairs).
+/// weight and inertia of transients, and weight of inertia, by where the proxy is. By what the stages declare
+/// transients, weight and inertia might lead to others too, by pushes and proxy to the hand before its first sample;
+/// viscosity, guidance, snap and keeping apart lead to none (effect_sum_test.cpp, all pairs).
 ///
 /// Stage, of scenes with one of them: after all of them and the contacts' shares, before what fades, delays and limits.
 void addEffects(const HandModel& model, const TransientsShare& transients, const WeightShare& weight,
                 const ViscosityShare& viscosity, const GuidanceShare& guidance, const SnapShare& snap,
-                HandWrench& wrench, EffectRecord& record, Report& report) noexcept;
+                const InertiaShare& inertia, const KeepApartShare& apart, HandWrench& wrench, EffectRecord& record,
+                Report& report) noexcept;
 inline constexpr StageOf kEffectSum{addEffects,
                                     {.name = "sum of effects",
                                      .parameters = "effects.record",

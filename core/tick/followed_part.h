@@ -17,7 +17,7 @@ struct FollowedPart {
 };
 
 /// Stage of the second of two hands that hold one part: the part's proxy is one, and the first hand's turn has moved it
-/// to where both springs and all contacts balance (motion::TwoSprings). What this hand feels is its own spring. Its
+/// to where both springs and all contacts balance (motion::Pull). What this hand feels is its own spring. Its
 /// share of each obstacle's energy is that of the obstacle's pressure in all. The depth at its own pose is not looked
 /// up: not a number.
 void followOther(const HandModel& model, const FollowedPart& shared, Proxy& proxy, Pushes& pushes,

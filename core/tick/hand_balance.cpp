@@ -94,13 +94,14 @@ public:
 private:
     std::span<BalancedContact> contacts() noexcept { return std::span(memory_.contacts).first(memory_.count); }
 
-    /// Springs of two hands on one part count twice: its motions times this have the metric of one spring.
+    /// Springs of two hands on one part count twice, and so does momentum: its motions times this have the metric of
+    /// one spring.
     double scaleOf(std::size_t hand) const noexcept {
-        return state(hand).springs == 1 ? 1.0 : std::sqrt(static_cast<double>(state(hand).springs));
+        return state(hand).isPulled() ? std::sqrt(state(hand).stiffness) : 1.0;
     }
     motion::Motion wantedOf(std::size_t hand, const Pose& X_WH) const noexcept {
         const HandState& own = state(hand);
-        return own.springs == 1 ? own.metric.between(own.X_WG, X_WH) : own.two_springs.wantedAt(own.metric, own.X_WG);
+        return own.isPulled() ? own.pull.wantedAt(own.metric, own.X_WG) : own.metric.between(own.X_WG, X_WH);
     }
     motion::Motion rowOf(std::size_t hand, const Found& found) const noexcept {
         return state(hand).metric.at(state(hand).X_WG).rowOf(found.point, found.normal) / scaleOf(hand);
@@ -187,7 +188,9 @@ private:
 void push(const HandInTick& hand, std::size_t obstacle, const Vec3& point, const Vec3& along) noexcept {
     const HandModel& model = *hand.model;
     HandState& state = *hand.state;
-    addPush(model, state, state.X_WG, point, along, model.contact.stiffness * along.norm(), state.from_hands[obstacle]);
+    // λ is over one spring's stiffness, a push over that of all that draws the part.
+    addPush(model, state, state.X_WG, point, along / state.stiffness, model.contact.stiffness * along.norm(),
+            state.from_hands[obstacle]);
     ++state.contacts_of_hands;
 }
 

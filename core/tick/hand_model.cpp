@@ -95,14 +95,17 @@ void addFriction(HandModel& model, const scene::Scene& scene) {
     if (any) model.friction = std::move(friction);
 }
 
-/// What gravity does to the held part, if the scene asks for it.
-void addGravity(HandModel& model, const scene::Scene& scene) {
+/// The held part's mass and what gravity does to it, if the scene asks for either.
+void addMass(HandModel& model, const scene::Scene& scene) {
     const double density = scene.spec.parts[model.body].density;
-    if (scene.spec.effects.weight.gravity.isZero(0.0) || !(density > 0.0)) return;
-    const auto mass = scene::massOf(*scene.parts[model.body], density);
-    if (!mass) return;
-    model.weight = mass->mass * scene.spec.effects.weight.gravity;
-    model.centre = mass->centre;
+    const scene::Effects& effects = scene.spec.effects;
+    if ((effects.weight.gravity.isZero(0.0) && !effects.inertia.any()) || !(density > 0.0)) return;
+    const auto body = scene::massOf(*scene.parts[model.body], density);
+    if (!body) return;
+    model.weight = body->mass * effects.weight.gravity;
+    model.mass = body->mass;
+    model.centre = body->centre;
+    model.moments = body->inertia;
 }
 
 /// Poses that the scene names, for what the first hand begins with; goals of steps, for the parts that they are of.
@@ -152,7 +155,8 @@ std::uint32_t HandModel::wrenchEffects() const noexcept {
     };
     return bit(WrenchEffect::Transients, hasTransients()) | bit(WrenchEffect::Weight, hasWeight()) |
            bit(WrenchEffect::Viscosity, effects.viscosity.any()) |
-           bit(WrenchEffect::Guidance, effects.guidance.share > 0.0) | bit(WrenchEffect::Snap, !snap_places.empty());
+           bit(WrenchEffect::Guidance, effects.guidance.share > 0.0) | bit(WrenchEffect::Snap, !snap_places.empty()) |
+           bit(WrenchEffect::Inertia, hasInertia()) | bit(WrenchEffect::KeepApart, keepsApart());
 }
 
 geometry::NearList nearListOf(const HandModel& model, double beyond) {
@@ -198,7 +202,7 @@ HandModel makeHandModel(const World& world, const scene::Scene& scene, std::size
         model.first_triangles = world.first_triangles;
         model.finest_cell = finestCellOf(model);
         addFriction(model, scene);
-        addGravity(model, scene);
+        addMass(model, scene);
         if (!(ratio > 0.0)) model.metric_radius = std::max(gyrationRadius(model, scene), 1e-6);
         model.margins = marginsOf(model);
     } else if (!(ratio > 0.0)) {

@@ -72,7 +72,9 @@ struct HandModel {
     double reach = 0.0;               // no point of the held part is farther from its origin [m]
     double metric_radius = 0.0;       // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
     Vec3 weight = Vec3::Zero();       // of the held part, world axes; zero: none [N]
-    Vec3 centre = Vec3::Zero();       // of its mass, part frame [m]
+    double mass = 0.0;                // likewise; 0: it has no density, or nothing asks for it [kg]
+    Vec3 centre = Vec3::Zero();       // of that, part frame [m]
+    Mat3 moments = Mat3::Zero();      // of inertia about it, part axes [kg·m²]
     ProxyMargins margins;
     scene::Effects effects;
     GuideWay way;                        // of its guidance
@@ -95,6 +97,15 @@ struct HandModel {
         return hasFieldProxy() && contact.method == method;
     }
     bool hasWeight() const noexcept { return !weight.isZero(0.0); }
+    /// The part goes on moving by itself; in two hands it is the first one's that moves it.
+    bool hasMass() const noexcept {
+        return effects.inertia.any() && mass > 0.0 && contact.method != scene::ContactMethod::Penalty;
+    }
+    bool hasInertia() const noexcept { return hasMass() && !follows; }
+    /// A spring holds the part to the hand.
+    bool hasCoupling() const noexcept { return hasProxy() || hasInertia(); }
+    /// From parts in other hands.
+    bool keepsApart() const noexcept { return effects.keep_apart.any() && meetsHands() && hasPart() && !follows; }
     bool hasTransients() const noexcept { return effects.transients.amplitude > 0.0 && hasObstacles(); }
     /// Those of WrenchEffect that it has, a bit each.
     std::uint32_t wrenchEffects() const noexcept;

@@ -1,6 +1,7 @@
 #include "core/tick/hand_state.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -70,12 +71,22 @@ HandState makeHandState(const HandModel& model) {
         static_cast<SurfaceFollow&>(state) = surfaceFollow(model);
     else if (model.geometry == scene::Geometry::Field && model.hasPart() && !model.follows)
         addQueryMemory(model, state, state);
+    if (model.hasInertia()) measureBy(model, std::array{Vec3(Vec3::Zero())}, state);
     return state;
 }
 
-void measureBy(const HandModel& model, const motion::Metric& metric, int springs, HandState& hand) noexcept {
+void measureBy(const HandModel& model, std::span<const Vec3> held, HandState& hand, double pulled) noexcept {
+    hand.springs = static_cast<int>(held.size());
+    hand.stiffness = hand.springs;
+    motion::Metric metric{model.metric_radius, held[0]};
+    if (model.hasInertia()) {
+        hand.pull = pullOf(model, held, momentumOf(model, hand, hand.X_WG));
+        hand.stiffness = hand.pull.stiffness();
+        metric = hand.pull.movingMetric();
+    } else if (held.size() > 1) {
+        metric = motion::Metric::betweenHands(model.metric_radius, held[0], held[1], pulled);
+    }
     hand.metric = metric;
-    hand.springs = springs;
     if (model.hasClosedForm()) hand.solver.measureBy(metric);
     if (model.hasSurfaces()) hand.surface->measureBy(metric);
     if (model.hasFieldProxy()) hand.step.look.open = false;

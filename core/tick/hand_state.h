@@ -14,7 +14,9 @@
 #include "core/tick/grip.h"
 #include "core/tick/guidance.h"
 #include "core/tick/hand_model.h"
+#include "core/tick/inertia.h"
 #include "core/tick/input_guard.h"
+#include "core/tick/keep_apart.h"
 #include "core/tick/navigation.h"
 #include "core/tick/output_stage.h"
 #include "core/tick/passivity.h"
@@ -46,9 +48,9 @@ using AllStages = StageList<kInputGuard, kEnergyAccount, kNavigation, kStartGate
                             kClosedFormProxy, kClosedFormFilter, kClosedFormCommonWay,  // god objects on closed forms
                             kClosedFormRecord, kClosedFormDepth,                        // what follows them
                             kSurfaceProxy, kSurfaceRecord, kSurfaceDepth,               // the same on surfaces
-                            kFollowedPart, kVirtualCoupling,                            // their wrench
+                            kFollowedPart, kVirtualCoupling, kInertia,                  // their wrench
                             kHeldPushes, kContactSign, kTransients, kContactShares, kWeightInHand, kViscosity,
-                            kGuidance, kSnap, kEffectSum,                         // effects
+                            kGuidance, kSnap, kKeepApart, kEffectSum,             // effects
                             kClutchedWrench, kOutputDelay, kPassivityController,  // what goes out
                             kNoWrench, kOutputLimits>;
 
@@ -56,19 +58,20 @@ using AllStages = StageList<kInputGuard, kEnergyAccount, kNavigation, kStartGate
 /// allocates.
 struct HandState : Parts<ObstaclePoses, HeldTarget, Grip, FollowedPart, InputGuard, HandMapping, Engagement,
                          EnergyAccounts, Proxy, ProxyMotion, ProxyFilter, ClosedFormHold, FilteredHold,
-                         ClosedFormMemory, SurfaceFollow, HandVelocity, ToolMotion, Stretch, ContactSign, Hang, Ringing,
-                         Stirring, Guiding, Pushes, DelayLine, SentWrench, QueryMemory> {};
+                         ClosedFormMemory, SurfaceFollow, HandVelocity, ToolMotion, Stretch, ContactSign, Hang, Moving,
+                         Ringing, Stirring, Guiding, NearPairs, Pushes, DelayLine, SentWrench, QueryMemory> {};
 
 /// What of it goes with the part: waits where nobody holds it.
 struct PartState : Parts<ObstaclePoses, HeldTarget, Proxy, ProxyMotion, ProxyFilter, ClosedFormHold, FilteredHold,
-                         ClosedFormMemory, SurfaceFollow, ToolMotion, QueryMemory> {};
+                         ClosedFormMemory, SurfaceFollow, ToolMotion, Moving, QueryMemory> {};
 
 /// The state before the first tick, with all memory that the ticks will need.
 HandState makeHandState(const HandModel& model);
 
 /// How a hand holds its part changes; the handle and the part stay where they are. All rt-safe.
-/// The part's motions are measured by `metric` from now on, and drawn by so many hands' springs.
-void measureBy(const HandModel& model, const motion::Metric& metric, int springs, HandState& hand) noexcept;
+/// The part is held at these points of it, by as many hands: its motions are measured by what draws it from now on.
+/// `pulled`: as in motion::Metric::betweenHands.
+void measureBy(const HandModel& model, std::span<const Vec3> held, HandState& hand, double pulled = 0.0) noexcept;
 /// The part is at `X_DG` in the handle, and held at `p_GC`.
 void regrip(const Pose& X_DG, const Vec3& p_GC, HandState& hand) noexcept;
 /// All obstacles that move are where `X_WP` says, and rest there; what was known of them is void where they do not.

@@ -1,6 +1,7 @@
 #include "core/tick/pick.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -73,7 +74,8 @@ void forgetPast(HandState& hand) noexcept {
 /// The part is where it rests, with nothing known of its surroundings, and is held at one point.
 void placePart(const HandModel& model, const std::vector<Pose>& X_WP, HandState& hand) noexcept {
     const Pose& X = X_WP[model.body];
-    measureBy(model, {model.metric_radius, hand.p_GC}, 1, hand);
+    static_cast<Moving&>(hand) = {};
+    measureBy(model, std::array{hand.p_GC}, hand);
     placeObstacles(model, X_WP, hand);
     hand.X_WT = hand.X_WG = hand.X_WR = hand.X_WH_before = hand.X_WG_begin = X;
     hand.from_hands.clear();
@@ -138,6 +140,8 @@ public:
         const Pose X_DP = X_WD.inverse() * state_.X_WP[body];
         hold_.body = body;
         forgetPast(hand_);
+        // A spring and damper on a mass begin where nothing is stretched.
+        hand_.has_last_stretch = model.hasMass();
         regrip(model.registration.X_DH * X_DP, X_DP.inverse().p, hand_);
         if (follows) {
             hold_.follows = true;
@@ -166,7 +170,10 @@ public:
         forgetPast(hand_);
         regrip(model.registration.X_DH, Vec3::Zero(), hand_);
         hand_.shared = false;
+        static_cast<NearPairs&>(hand_) = {};
         hand_.metric = motion::Metric{model.metric_radius};
+        hand_.springs = 1;
+        hand_.stiffness = 1.0;
     }
 
 private:
@@ -174,9 +181,8 @@ private:
     void holdTogether(const HandModel& model, std::size_t holder) noexcept {
         HandState& first = state_.hands[holder];
         hand_.shared = first.shared = true;
-        static_cast<Stretch&>(first) = {};  // it hangs from its own spring no more
-        measureBy(model_.hand(holder, model.body),
-                  motion::Metric::betweenHands(model.metric_radius, first.p_GC, hand_.p_GC), 2, first);
+        leaveRest(model_.hand(holder, model.body), 1.0, first);  // it hangs from its own spring no more
+        measureBy(model_.hand(holder, model.body), std::array{first.p_GC, hand_.p_GC}, first);
     }
 
     /// What the partner held with this hand it holds alone; `takes`: it moves it from now on.
@@ -186,10 +192,19 @@ private:
         hold.partner = Hold::kNoHand;
         hold.follows = false;
         other.shared = false;
-        static_cast<Stretch&>(other) = {};
+        leaveRest(model_.hand(partner, body), -1.0, other);
         if (takes) swapParts(other, state_.waiting[model_.placeOf(body)]);
         const HandModel& model = model_.hand(partner, body);
-        measureBy(model, {model.metric_radius, other.p_GC}, 1, other);
+        measureBy(model, std::array{other.p_GC}, other);
+    }
+
+    /// What is known of the coupling's stretch, from where a part with weight hangs to the hand (1) or back (-1), goes
+    /// on where the part does; else nothing is known.
+    static void leaveRest(const HandModel& model, double way, Stretch& stretch) noexcept {
+        if (model.hasInertia())
+            stretch.last_stretch += way / model.contact.stiffness * model.weight;
+        else
+            stretch = {};
     }
 
     const TickModel& model_;

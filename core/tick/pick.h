@@ -30,7 +30,7 @@ struct TickState;
 /// So nothing moves and no spring is stretched when the hand closes. A hand that finds nothing has closed on nothing.
 ///
 /// In two hands (god objects only). The hand that closed first goes on to move the part: by both springs, each where
-/// its hand holds it (motion::TwoSprings), and the second one follows it (followed_part.h). When the first opens the
+/// its hand holds it (motion::Pull), and the second one follows it (followed_part.h). When the first opens the
 /// second goes on alone, and when the second does the first: nothing is laid down. So parts are handed over. A device
 /// that is believed to be elsewhere (input_guard.h) gets another grip at the same part, whose other hand it does not
 /// tear it from.

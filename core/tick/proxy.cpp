@@ -250,7 +250,9 @@ AllowedMotion allowedMotion(const MovingProxy& moving, const motion::Motion& wan
     return allowed;
 }
 
-void followHand(const HandModel&, const HandSample& hand, Proxy& proxy) noexcept { proxy.X_WG = hand.X_WH; }
+void followHand(const HandModel& model, const HandSample& hand, const HeldTarget& target, Proxy& proxy) noexcept {
+    proxy.X_WG = model.hasInertia() && !hand.relocated ? target.X_WT : hand.X_WH;
+}
 
 void filterProxy(const HandModel& model, const HandSample& hand, const HeldTarget& target,
                  const ObstaclePoses& obstacles, ProxyFilter& filter, Proxy& proxy, QueryMemory& memory,

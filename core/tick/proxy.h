@@ -135,8 +135,8 @@ struct AllowedMotion {
 AllowedMotion allowedMotion(const MovingProxy& moving, const motion::Motion& wanted,
                             const motion::Surroundings& around) noexcept;
 
-/// Stage of a scene without obstacles: the held part is where the hand is.
-void followHand(const HandModel& model, const HandSample& hand, Proxy& proxy) noexcept;
+/// Stage of a scene without obstacles: the held part is where the hand is, or goes on by itself (inertia.h).
+void followHand(const HandModel& model, const HandSample& hand, const HeldTarget& target, Proxy& proxy) noexcept;
 inline constexpr StageOf kFreeHand{followHand,
                                    {.name = "free hand",
                                     .parameters = "",

@@ -10,6 +10,7 @@
 #include "core/motion/active_set.h"
 #include "core/motion/friction.h"
 #include "core/motion/metric.h"
+#include "core/motion/pull.h"
 #include "core/tick/energy_account.h"
 #include "core/tick/lookout.h"
 
@@ -40,14 +41,15 @@ struct ObstaclePoses {
 };
 
 /// Where the held part is asked to go, and what pushes it there beside its hand: the hand's pose, or where a part with
-/// weight rests below it (weight.h), and nothing, but where it touches a part in another hand (hand_balance.h). Nobody
-/// writes it but step(), before the stages that follow it.
+/// weight rests below it (weight.h), moves on (inertia.h) or is held by two, and nothing, but where it touches a part
+/// in another hand (hand_balance.h). Nobody writes it but step(), before the stages that follow it.
 struct HeldTarget {
     static constexpr bool kOnlyRead = true;
     Pose X_WT;
     motion::Metric metric;                // by which the way there is measured: where the hand holds the part
-    int springs = 1;                      // of hands that draw it there: 2 where two hold it (pick.h), with these
-    motion::TwoSprings two_springs;       // and X_WT where they rest
+    int springs = 1;                      // of hands that draw it there: 2 where two hold it (pick.h)
+    double stiffness = 1.0;               // of the pull against moving, over K: pull.stiffness()
+    motion::Pull pull;                    // where it is more than one spring, and X_WT where it rests
     bool balanced = false;                // X_WT is where they balance with other hands' parts (hand_balance.h)
     FewOfMany<ObstaclePush> from_hands;   // of each obstacle, as Pushes; empty where no other hand is
     std::uint32_t contacts_of_hands = 0;  // that push so
@@ -55,12 +57,14 @@ struct HeldTarget {
     Pose X_WH_before;                     // the hand in the tick before, where there are several
     double others_way = 0.0;              // that the other hands went since then, together [m]
 
+    /// True where one hand's spring does not say all.
+    bool isPulled() const noexcept { return stiffness != 1.0; }
     /// What is to be followed in place of X_WT; null: X_WT.
-    const motion::TwoSprings* twoSprings() const noexcept { return springs > 1 && !balanced ? &two_springs : nullptr; }
+    const motion::Pull* pullBeside() const noexcept { return isPulled() && !balanced ? &pull : nullptr; }
     /// The motion that is asked for with the part at `X`.
     motion::Motion wantedAt(const Pose& X) const noexcept {
-        const motion::TwoSprings* two = twoSprings();
-        return two != nullptr ? two->wantedAt(metric, X) : metric.between(X, X_WT);
+        const motion::Pull* beside = pullBeside();
+        return beside != nullptr ? beside->wantedAt(metric, X) : metric.between(X, X_WT);
     }
 };
 

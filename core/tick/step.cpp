@@ -83,14 +83,6 @@ std::size_t runStages(const HandModel& model, HandState& state, TickFrame& frame
     return i;
 }
 
-/// Work that all hands' proxies may do in a tick, and what one has done.
-std::uint32_t mostWork(const HandModel& model) noexcept {
-    return model.geometry == scene::Geometry::Surface ? static_cast<std::uint32_t>(kSurfaceBudget) : kFieldBudget;
-}
-std::uint32_t workDone(const HandModel& model, const TickFrame& frame) noexcept {
-    return model.hasSurfaces() ? frame.nodes_visited : frame.work;
-}
-
 /// The parts that other hands hold, or have just let go, as the tick begins.
 void noteOthers(const HandModel& model, const TickState& whole, std::size_t hand, HandState& state) noexcept {
     state.carried_count = 0;
@@ -134,24 +126,46 @@ std::size_t sense(const HandModel& model, TickState& whole, std::size_t hand, co
 // Of what stretched springs add to the metric's square, and of what is rounded there
 constexpr double kPulledRoom = 1.3, kPulledTooMuch = 2.0, kRoundingOfSquare = 1e-9;
 
+/// Where a hand that is at `X_WH` draws a part that goes on moving, its spring at rest at `X_WR`.
+Pose drawOn(const HandInTick& hand, const Pose& X_WH, const Pose& X_WR, bool relocated) noexcept {
+    const HandModel& model = *hand.model;
+    HandState& state = *hand.state;
+    if (relocated) {
+        static_cast<Moving&>(state) = {};
+        static_cast<Stretch&>(state) = {};
+    }
+    const Pose& X_WG = relocated ? X_WH : state.X_WG;
+    state.pull = pullOf(model, std::array{state.p_GC}, momentumOf(model, state, X_WG));
+    state.pull.springs[0].X_WT = drawnTo(model, state, state.p_GC, X_WR, X_WG);
+    return state.pull.restFrom(state.metric, X_WG);
+}
+
 /// Two hands' springs on one part, and where it would rest. The first one's state takes them.
 void drawTogether(const HandInTick& first, const Pose& X_WH, const HandState& second,
                   const Pose& X_WH_second) noexcept {
     const HandModel& model = *first.model;
     HandState& state = *first.state;
     const scene::ContactSpec& contact = model.contact;
-    state.two_springs = {.springs = {{{X_WH, state.p_GC}, {X_WH_second, second.p_GC}}},
-                         .turn = contact.rotational_stiffness / contact.stiffness,
-                         .load = model.weight / contact.stiffness,
-                         .p_GM = model.centre};
+    if (model.hasInertia()) {
+        state.pull = pullOf(model, std::array{state.p_GC, second.p_GC}, momentumOf(model, state, state.X_WG));
+        state.pull.springs[0].X_WT = drawnTo(model, state, state.p_GC, X_WH, state.X_WG);
+        state.pull.springs[1].X_WT = drawnTo(model, second, second.p_GC, X_WH_second, state.X_WG);
+        state.pull.load = model.weight / contact.stiffness;
+        state.X_WT = state.pull.restFrom(state.metric, state.X_WG);
+        return;
+    }
+    state.pull = {.springs = {{{X_WH, state.p_GC}, {X_WH_second, second.p_GC}}},
+                  .turn = contact.rotational_stiffness / contact.stiffness,
+                  .load = model.weight / contact.stiffness,
+                  .p_GM = model.centre};
     // The metric follows the springs' stretch in leaps: between them it is stiffer than they are, by a factor at most.
     const double rho = model.metric_radius, arm = 0.5 * (state.p_GC - second.p_GC).norm();
-    const double slack = rho * rho + arm * arm, pulled = std::max(0.0, state.two_springs.pulledAt(state.X_WG));
+    const double slack = rho * rho + arm * arm, pulled = std::max(0.0, state.pull.pulledAt(state.X_WG));
     const double square = state.metric.across * state.metric.across;
     if (square > 0.0 && (square < slack + pulled - kRoundingOfSquare * slack ||
                          square > kPulledTooMuch * (slack + kPulledRoom * pulled)))
-        measureBy(model, motion::Metric::betweenHands(rho, state.p_GC, second.p_GC, kPulledRoom * pulled), 2, state);
-    state.X_WT = state.two_springs.restFrom(state.metric, state.X_WG);
+        measureBy(model, std::array{state.p_GC, second.p_GC}, state, kPulledRoom * pulled);
+    state.X_WT = state.pull.restFrom(state.metric, state.X_WG);
 }
 
 /// A device is believed to be elsewhere: it holds the part there from now on, where that is.
@@ -200,7 +214,10 @@ void step(const TickModel& model, TickState& state, std::span<const DeviceReadin
     for (std::size_t i = 0; i < count; ++i) {
         all[i] = {&model.hand(i, state.holds[i].body, state.holds[i].follows), &state.hands[i]};
         next[i] = sense(*all[i].model, state, i, readings[i], outputs[i].frame, watch);
-        X_WT[i] = all[i].model->hasWeight() ? state.hands[i].X_WR : outputs[i].frame.X_WH;
+        const TickFrame& frame = outputs[i].frame;
+        X_WT[i] = all[i].model->hasWeight() ? state.hands[i].X_WR : frame.X_WH;
+        if (all[i].model->hasInertia() && state.holds[i].partner == Hold::kNoHand)
+            X_WT[i] = drawOn(all[i], frame.X_WH, X_WT[i], frame.relocated);
     }
     for (std::size_t i = 0; i < count; ++i) {
         const Hold& hold = state.holds[i];
@@ -212,11 +229,7 @@ void step(const TickModel& model, TickState& state, std::span<const DeviceReadin
             holdThere(*all[hand].model, state.hands[i].X_WG, state.hands[hand], outputs[hand].frame);
             regripped = true;
         }
-        if (regripped)
-            measureBy(
-                *all[i].model,
-                motion::Metric::betweenHands(all[i].model->metric_radius, state.hands[i].p_GC, state.hands[k].p_GC), 2,
-                state.hands[i]);
+        if (regripped) measureBy(*all[i].model, std::array{state.hands[i].p_GC, state.hands[k].p_GC}, state.hands[i]);
         drawTogether(all[i], outputs[i].frame.X_WH, state.hands[k], outputs[k].frame.X_WH);
         X_WT[i] = state.hands[i].X_WT;
     }
@@ -292,8 +305,8 @@ TickRecord makeRecord(std::int64_t tick, const DeviceReading& reading, const Tic
     store(record.navigation_quaternion, frame.turn);
     record.effects = frame.effects;
     if (frame.effects != 0) {
-        const std::array added{&frame.of_transients, &frame.of_weight, &frame.of_viscosity, &frame.of_guidance,
-                               &frame.of_snap};
+        const std::array added{&frame.of_transients, &frame.of_weight,  &frame.of_viscosity, &frame.of_guidance,
+                               &frame.of_snap,       &frame.of_inertia, &frame.of_keep_apart};
         static_assert(added.size() == kWrenchEffects);
         for (std::size_t i = 0; i < kWrenchEffects; ++i) store(record.effect_wrench[i], *added[i]);
         record.guided = static_cast<float>(frame.guided);

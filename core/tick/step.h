@@ -16,10 +16,9 @@ struct TickModel;
 struct TickState;
 
 /// What one tick works on; dies with it.
-struct TickFrame
-    : Parts<Reading, HandSample, MappingRecord, AreaLoad, ContactRecord, HandDepth, EnergyRecord, TransientsShare,
-            WeightShare, ViscosityShare, GuidanceShare, SnapShare, EffectRecord, HandWrench, CommandedWrench, Report> {
-};
+struct TickFrame : Parts<Reading, HandSample, MappingRecord, AreaLoad, ContactRecord, HandDepth, EnergyRecord,
+                         TransientsShare, WeightShare, ViscosityShare, GuidanceShare, SnapShare, InertiaShare,
+                         KeepApartShare, EffectRecord, HandWrench, CommandedWrench, Report> {};
 
 /// What one tick gives back: exact values, before they are rounded into a record.
 struct TickOutput {

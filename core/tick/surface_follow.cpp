@@ -16,7 +16,7 @@ void noteRows(const HandModel& model, const HeldTarget& target, const surface::S
     for (const surface::ContactRow& row : surface.rows()) {
         if (!(row.push > 0.0)) continue;
         addPush(model, target, surface.pose(), surface.pointOf(row), row.push * surface.normalOf(row),
-                model.contact.stiffness * target.springs * row.push, pushes.pushes[obstacleOf(model, surface, row)]);
+                model.contact.stiffness * target.stiffness * row.push, pushes.pushes[obstacleOf(model, surface, row)]);
     }
 }
 
@@ -69,7 +69,7 @@ void followOnSurface(const HandModel& model, const HandSample& hand, const HeldT
     if (model.meetsHands()) follow.surface->setHands(hand.X_WH, target.others_way, target.contacts_of_hands > 0);
     // A spring from the old place would throw the hand across the room.
     if (hand.relocated) follow.surface->place(hand.X_WH);
-    const surface::SurfaceTick& now = follow.surface->advance(target.X_WT, target.twoSprings());
+    const surface::SurfaceTick& now = follow.surface->advance(target.X_WT, target.pullBeside());
     follow.gap = now.gap;
     follow.contacts = static_cast<std::uint32_t>(now.active);
     proxy.X_WG = now.X_WG;

@@ -83,6 +83,14 @@ struct SnapShare {
     Wrench of_snap;
 };
 
+struct InertiaShare {
+    Wrench of_inertia;
+};
+
+struct KeepApartShare {
+    Wrench of_keep_apart;
+};
+
 /// Owner: sum of effects.
 struct EffectRecord {
     std::uint32_t effects = 0;  // HandModel::wrenchEffects, where records are to tell what they add

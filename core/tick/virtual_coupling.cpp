@@ -43,6 +43,12 @@ void renderCoupling(const HandModel& model, const HandSample& hand, const Grip& 
     const Vec3 psi = rotationVector(proxy.X_WG.q * rest.q.conjugate());
     measureRates(stretch, hand, e, psi);
     const scene::ContactSpec& c = model.contact;
+    if (model.hasInertia() && !grip.shared) {
+        wrench.F_H_W.force = c.stiffness * e + c.damping * stretch.last_stretch_rate;
+        wrench.F_H_W.torque = c.rotational_stiffness * psi + c.rotational_damping * stretch.last_twist_rate +
+                              grip.leverOf(hand.X_WH.q).cross(wrench.F_H_W.force);
+        return;
+    }
     wrench.F_H_W.force = springAndDamper(e, stretch.last_stretch_rate, c.stiffness, c.damping);
     wrench.F_H_W.torque = springAndDamper(psi, stretch.last_twist_rate, c.rotational_stiffness, c.rotational_damping) +
                           grip.leverOf(hand.X_WH.q).cross(wrench.F_H_W.force);

@@ -27,7 +27,8 @@ struct Stretch {
 /// braked. It may not pull the hand into the surface it leaves: where the damper would turn F against e (T against ψ),
 /// that part is dropped. Limit cases: a proxy at rest gives ė = -v_H, the usual wall damper; e = 0 gives F = 0, also in
 /// the tick after contact. A part with weight (weight.h): from where it would rest in the air, R in place of H; it
-/// hangs there without a load of this stage.
+/// hangs there without a load of this stage. One with inertia: the damper acts on the part too, and nothing of it is
+/// dropped; what contacts do not hold is inertia's (inertia.h).
 void renderCoupling(const HandModel& model, const HandSample& hand, const Grip& grip, const Proxy& proxy,
                     const Hang& hang, Stretch& stretch, HandWrench& wrench) noexcept;
 inline constexpr StageOf kVirtualCoupling{
@@ -35,7 +36,7 @@ inline constexpr StageOf kVirtualCoupling{
     {.name = "virtual coupling",
      .parameters = "contact.stiffness_N_per_m, rotational_stiffness, damping, rotational_damping",
      .cost = "constant",
-     .needs = [](const HandModel& model) { return model.hasProxy(); },
+     .needs = [](const HandModel& model) { return model.hasCoupling(); },
      .reason = [](const HandModel&) { return "spring and damper between proxy and hand"; }}};
 
 }  // namespace passung::tick

@@ -43,14 +43,14 @@ struct Hang {
 /// Not conserved: where a contact turns the part by ψ against the hand, τ is off by up to |f||c||ψ|, and a closed way
 /// of the part's turn α may give or take |f||c||ψ| α.
 ///
-/// In two hands (motion::TwoSprings): the springs' rest pose is that of both with the weight, and each hand feels what
+/// In two hands (motion::Pull): the springs' rest pose is that of both with the weight, and each hand feels what
 /// its own spring holds; together they hold m g. What of it is weight is what its force has along m g, within 0 ... 1
 /// times that: so much of lifting each hand's account leaves out, and no obstacle has (borneWeight).
 ///
 /// Stability: against turning, the weight is a spring of at most |f||c| a radian, which is no more than K_φ; against
 /// moving it is none.
 ///
-/// Inertia: none is rendered. The proxy has no mass, and a hand that shakes the part feels its weight and no more.
+/// Inertia: an effect of its own (inertia.h). Without it a hand that shakes the part feels its weight and no more.
 
 /// What gravity does to the part at this orientation of it: about its origin, world axes. rt-safe.
 Wrench weightOf(const HandModel& model, const Quat& R_WG) noexcept;

@@ -12,11 +12,12 @@ Body bodyOf(const scene::Part& part, scene::Geometry geometry, World& world) {
     body.box = geometry::boundsOf(part.mesh);
     body.box.low.array() -= part.chord_error;
     body.box.high.array() += part.chord_error;
+    body.clusters = part.clusters.get();
     if (geometry == scene::Geometry::ClosedForm) {
         body.solid = &world.solids.emplace_back(*closed_form::solidOf(*part.shape));
         body.reach = closed_form::reachOf(*body.solid);
     } else if (geometry == scene::Geometry::Surface) {
-        body.surface = part.clusters.get();
+        body.surface = body.clusters;
         body.reach = body.surface->reach();
     } else {
         body.field = part.field.get();

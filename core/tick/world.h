@@ -24,6 +24,7 @@ struct Body {
     const shell::SphereTree* shell = nullptr;
     const shell::EdgeCurves* edges = nullptr;         // with the shell
     const geometry::ClusterTree* surface = nullptr;   // Geometry::Surface only
+    const geometry::ClusterTree* clusters = nullptr;  // the same, and of parts that keep apart in any geometry
     const closed_form::SmoothSolid* solid = nullptr;  // Geometry::ClosedForm only; parts of one shape share it
     geometry::Bounds box = {};                        // that holds it, in its frame [m]
     const geometry::TriangleTree* faces = nullptr;    // of parts that can be picked up; equal ones share it

@@ -161,6 +161,8 @@ constexpr std::array kTables{
     TableInfo{"effects.viscosity", "`[effects.viscosity]`", ""},
     TableInfo{"effects.guidance", "`[effects.guidance]`", ""},
     TableInfo{"effects.snap", "`[effects.snap]`", ""},
+    TableInfo{"effects.inertia", "`[effects.inertia]`", ""},
+    TableInfo{"effects.keep_apart", "`[effects.keep_apart]`", ""},
     TableInfo{"effects.pick", "`[effects.pick]`", ""},
     TableInfo{"effects.clutch", "`[effects.clutch]`", ""},
     TableInfo{"effects.position_scale", "`[effects.position_scale]`", ""},

@@ -224,6 +224,12 @@ std::string effectsJson(const scene::Effects& effects) {
                               .number("range_m", effects.snap.range)
                               .json("at", listOf(effects.snap.X_WG, poseJson))
                               .str());
+    if (effects.inertia.any()) json.json("inertia", JsonObject().number("scale", effects.inertia.scale).str());
+    if (effects.keep_apart.any())
+        json.json("keep_apart", JsonObject()
+                                    .number("stiffness_N_per_m", effects.keep_apart.stiffness)
+                                    .number("range_m", effects.keep_apart.range)
+                                    .str());
     if (effects.record) json.boolean("record", true);
     if (effects.picks()) json.json("pick", pickJson(effects.pick));
     addNavigation(effects.navigation, json);

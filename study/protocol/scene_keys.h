@@ -162,12 +162,14 @@ inline constexpr std::array kSceneKeys{
     Key{"effects", "passivity_controller", Table, kAny, "", "(none)", "A damper that takes energy back where the controller gave more than it took in; the account itself is always recorded."},
     Key{"effects", "transients", Table, kAny, "", "(none)", "Event-based transients: a decaying vibration in proportion to the speed, added at every impact, as a tap on something hard gives."},
 
-    Key{"effects", "weight", Table, kAny, "", "(none)", "Weight of the held part, by its density_kg_per_m3: felt in the air, not where the part lies. The part hangs from the hand by its weight over the stiffness: `explain` says how far. It has no inertia."},
+    Key{"effects", "weight", Table, kAny, "", "(none)", "Weight of the held part, by its density_kg_per_m3: felt in the air, not where the part lies. The part hangs from the hand by its weight over the stiffness: `explain` says how far. Its inertia is an effect of its own."},
 
     Key{"effects", "viscosity", Table, kAny, "", "(none)", "A damper on the held part's motion, in the air and in contact: it moves as in a fluid."},
     Key{"effects", "guidance", Table, kAny, "", "(none)", "Shared control: a guide goes along a way before the first hand and draws it after itself by a spring, with the share that is asked for. It goes with one part: not with `effects.pick`; and it gives energy out: not with a passivity controller."},
     Key{"effects", "snap", Table, kAny, "", "(none)", "Near a place of its own the held part is drawn into it, as by a magnet: with `effects.pick` into the goals of the task's steps, else into the poses `at`. What it gives on the way in it takes on the way out: not with a passivity controller."},
-    Key{"effects", "record", Boolean, kAny, "", "false", "True: what each of transients, weight, viscosity, guidance and snap adds to the wrench is recorded in every tick, and exported with the samples."},
+    Key{"effects", "inertia", Table, kAny, "", "(none)", "Inertia of the held part, by its density_kg_per_m3: what it takes to shake and to turn it, and that it goes on where nothing stops it. A god object's proxy is then a mass on the coupling's spring."},
+    Key{"effects", "keep_apart", Table, kAny, "", "(none)", "Parts in two hands push each other away before they touch, by the distance of their surfaces. What one hand puts in the other one may get: not with a passivity controller."},
+    Key{"effects", "record", Boolean, kAny, "", "false", "True: what each of transients, weight, viscosity, guidance, snap, inertia and keep_apart adds to the wrench is recorded in every tick, and exported with the samples."},
 
     Key{"effects", "pick", Table, kAny, "", "(none)", "Hands pick parts up and let them go, by a button: a hand closes on the nearest pickable part, and the coupling holds it where the hand's point was."},
     Key{"effects", "clutch", Table, kAny, "", "(none)", "While its button is held the hand moves and the part stays, as a mouse that is lifted; let go, the part goes on from there without a jump. The wrench fades within 50 ms, at once where the hand yields to it, and a coupling relaxes, so that no energy is given out."},
@@ -206,6 +208,11 @@ inline constexpr std::array kSceneKeys{
     Key{"effects.snap", "stiffness_N_per_m", Number, from(0, 10000), "", "!", "Stiffness in the place. 0: no snap at all, to the last bit. The force is largest, 0.286 times this times the range, where 0.45 of the range is left. With the coupling's, and a guide's, it stays within the device's stable maximum, which is what contact.stiffness_N_per_m is where it is not set. Against turning it is this times rotational_stiffness over stiffness of the contact. Where it is above 0, `contacts` > 0 alone tells contact to all measures."},
     Key{"effects.snap", "range_mm", Number, aboveUpTo(0, 1000), "", "5", "Distance at which the part begins to be drawn: of the point that the hand holds from where it would be in the place, the part not turned against it. A turn of 1 rad counts as the square root of rotational_stiffness over stiffness of the contact."},
     Key{"effects.snap", "at", Tables, kAny, "", "(the goals of the steps)", "Places of the first hand's part as poses in the world, at most 64; only without `effects.pick`, and then one at least; their ranges do not meet. Each has a `position` and `rotation_deg`."},
+
+    Key{"effects.inertia", "scale", Number, from(0, 100), "", "1", "Times the part's own mass and moments of inertia. 0: none at all, to the last bit. Made to be a factor's key."},
+
+    Key{"effects.keep_apart", "stiffness_N_per_m", Number, from(0, 10000), "", "!", "Force per length by which the parts are nearer than the range. 0: none at all, to the last bit. With the coupling's it stays below the device's stable maximum."},
+    Key{"effects.keep_apart", "range_mm", Number, aboveUpTo(0, 1000), "", "20", "Distance of the two parts' surfaces from which on they push each other away."},
 
     Key{"effects.pick", "reach_mm", Number, aboveUpTo(0, 1000), "", "!", "Largest distance of a part's surface from the hand's point, the origin of what the registration puts into the handle."},
     Key{"effects.pick", "button", Integer, from(1, scene::kButtons), "", "1", "Number of the device's button, from 1. No other effect may have it."},

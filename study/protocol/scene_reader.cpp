@@ -212,19 +212,24 @@ void checkStability(const TableReader& device_table, const TableReader& contact_
 
 /// The coupling is resolved against the first hand's device: another one has to bear it.
 void checkOtherStiffness(const TableReader& hand_table, const TableReader& contact_table,
-                         const DeviceDescription* device, const scene::ContactSpec& contact, const scene::Snap& snap,
-                         const scene::HandSpec& hand) {
+                         const DeviceDescription* device, const scene::ContactSpec& contact,
+                         const scene::Effects& effects, const scene::HandSpec& hand) {
     if (device == nullptr || contact_table.boolean("allow_unstable")) return;
-    const double stiffer = 1.0 + snap.stiffness / contact.stiffness;  // by the spring beside the coupling's
-    const auto check = [&](const char* key, double stiffness, double maximum) {
-        if (maximum > 0.0 && stiffer * stiffness > maximum * (1.0 + 1e-9))
-            hand_table.fail("device", fmt::format("{} displays contact.{}{} up to {} stably, the scene's is {}; lower "
-                                                  "it, or contact.allow_unstable = true",
-                                                  device->name, key, snap.any() ? " and effects.snap together" : "",
-                                                  maximum, stiffer * stiffness));
+    // Springs beside the coupling's: snap turns the part as stiffly as the coupling, for as much as it moves it.
+    const double snap = effects.picks() ? effects.snap.stiffness : 0.0, apart = effects.keep_apart.stiffness;
+    const auto check = [&](const char* key, double stiffness, bool keeps_apart, double maximum) {
+        if (!(maximum > 0.0) || stiffness <= maximum * (1.0 + 1e-9)) return;
+        std::string all = fmt::format("contact.{}", key);
+        if (snap > 0.0) all += " and effects.snap";
+        if (keeps_apart) all += " and effects.keep_apart";
+        hand_table.fail(
+            "device", fmt::format("{} displays {}{} up to {} stably, the scene's is {}; lower it, or "
+                                  "contact.allow_unstable = true",
+                                  device->name, all, snap > 0.0 || keeps_apart ? " together" : "", maximum, stiffness));
     };
-    check("stiffness_N_per_m", contact.stiffness, device->stable_stiffness_N_per_m / hand.largestScale());
-    check("rotational_stiffness_Nm_per_rad", contact.rotational_stiffness,
+    check("stiffness_N_per_m", contact.stiffness + snap + apart, apart > 0.0,
+          device->stable_stiffness_N_per_m / hand.largestScale());
+    check("rotational_stiffness_Nm_per_rad", (1.0 + snap / contact.stiffness) * contact.rotational_stiffness, false,
           device->stable_rotational_stiffness_Nm_per_rad);
 }
 
@@ -411,8 +416,7 @@ void readOtherHands(const TableReader& read, std::span<const std::string> names,
             hand.navigation = readNavigation(own, device, errors);
         }
         checkStability(device_table, contact_table, device, content.scene.contact, hand);
-        checkOtherStiffness(hand_table, contact_table, device, content.scene.contact,
-                            content.scene.effects.picks() ? content.scene.effects.snap : scene::Snap{}, hand);
+        checkOtherStiffness(hand_table, contact_table, device, content.scene.contact, content.scene.effects, hand);
         content.other_devices.push_back(device_table.text("preset"));
         content.scene.other_hands.push_back(std::move(hand));
     }
@@ -479,19 +483,47 @@ void checkSnap(const TableReader& effects_table, const scene::SceneSpec& scene, 
         }
 }
 
+/// Inertia and what cannot be beside it.
+void checkInertia(const TableReader& effects_table, const scene::SceneSpec& scene, Errors& errors) {
+    if (!scene.effects.inertia.any()) return;
+    const TableReader read(*effects_table.node("inertia"), {"effects.inertia"}, effects_table.pathOf("inertia"),
+                           errors);
+    if (scene.contact.method == scene::ContactMethod::Penalty)
+        read.fail("scale",
+                  "must be 0 with contact.method = \"penalty\": a mass needs a god object's proxy, the penalty's tool "
+                  "has contact.tool_mass_kg");
+    if (scene.contact.budget_nodes > 0)
+        read.fail("scale", "must be 0 with contact.budget_nodes: a step that takes several ticks has no speed");
+}
+
+/// Keeping apart likewise.
+void checkKeepApart(const TableReader& effects_table, const scene::SceneSpec& scene, Errors& errors) {
+    if (!scene.effects.keep_apart.any()) return;
+    const TableReader read(*effects_table.node("keep_apart"), {"effects.keep_apart"},
+                           effects_table.pathOf("keep_apart"), errors);
+    if (scene.handCount() < 2)
+        read.fail("stiffness_N_per_m", "must be 0 with one hand: it keeps apart what two hands hold");
+    if (effects_table.has("passivity_controller"))
+        read.fail("stiffness_N_per_m",
+                  "must be 0 with effects.passivity_controller, which would take back what the other hand puts in");
+}
+
 /// The springs that draw the hand add to the coupling's: the device has to display all of them together stably.
 void checkDrawing(const TableReader& effects_table, const TableReader& contact_table, const DeviceDescription* device,
                   const scene::SceneSpec& scene, Errors& errors) {
     const scene::Effects& effects = scene.effects;
     checkGuidance(effects_table, effects.guidance, errors);
     checkSnap(effects_table, scene, errors);
+    checkInertia(effects_table, scene, errors);
+    checkKeepApart(effects_table, scene, errors);
     const double share = effects.guidance.share;
-    const bool guides = share > 0.0;
-    if (device == nullptr || contact_table.boolean("allow_unstable") || !(guides || effects.snap.any())) return;
-    const char* effect = guides ? "guidance" : "snap";
-    const TableReader read(*effects_table.node(effect), {guides ? "effects.guidance" : "effects.snap"},
-                           effects_table.pathOf(effect), errors);
-    const char* other = guides && effects.snap.any() ? " and effects.snap" : "";
+    const bool guides = share > 0.0, snaps = effects.snap.any(), apart = effects.keep_apart.any();
+    if (device == nullptr || contact_table.boolean("allow_unstable") || !(guides || snaps || apart)) return;
+    const std::string effect = guides ? "guidance" : snaps ? "snap" : "keep_apart";
+    const TableReader read(*effects_table.node(effect), {"effects." + effect}, effects_table.pathOf(effect), errors);
+    std::string other;
+    if (guides && snaps) other += " and effects.snap";
+    if ((guides || snaps) && apart) other += " and effects.keep_apart";
     const auto check = [&](const char* contact_key, bool own_key, double coupling, double guide, double snap,
                            double maximum) {
         if (!(maximum > 0.0) || coupling + share * guide + snap <= maximum * (1.0 + 1e-9)) return;
@@ -501,7 +533,8 @@ void checkDrawing(const TableReader& effects_table, const TableReader& contact_t
                               contact_key, coupling, other, device->name, maximum, guides ? " or the share" : ""));
     };
     const scene::ContactSpec& c = scene.contact;
-    check("stiffness_N_per_m", true, c.stiffness, effects.guidance.stiffness, effects.snap.stiffness,
+    check("stiffness_N_per_m", true, c.stiffness, effects.guidance.stiffness,
+          effects.snap.stiffness + effects.keep_apart.stiffness,
           device->stable_stiffness_N_per_m / scene.hand(0).largestScale());
     check("rotational_stiffness_Nm_per_rad", guides, c.rotational_stiffness, effects.guidance.rotational_stiffness,
           effects.snap.stiffness * c.rotational_stiffness / c.stiffness,
@@ -540,6 +573,12 @@ scene::Effects readEffects(const TableReader& read, const DeviceDescription* dev
             readGuidance(TableReader(*node, {"effects.guidance"}, read.pathOf("guidance"), errors), units, errors);
     if (const Node* node = read.node("snap"))
         effects.snap = readSnap(TableReader(*node, {"effects.snap"}, read.pathOf("snap"), errors), units, errors);
+    if (const Node* node = read.node("inertia"))
+        effects.inertia.scale = TableReader(*node, {"effects.inertia"}, read.pathOf("inertia"), errors).number("scale");
+    if (const Node* node = read.node("keep_apart")) {
+        const TableReader apart(*node, {"effects.keep_apart"}, read.pathOf("keep_apart"), errors);
+        effects.keep_apart = {apart.numberOr("stiffness_N_per_m", 0.0), apart.number("range_mm")};
+    }
     if (const Node* node = read.node("pick")) {
         const TableReader pick(*node, {"effects.pick"}, read.pathOf("pick"), errors);
         effects.pick = {.reach = pick.number("reach_mm"),

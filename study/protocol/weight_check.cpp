@@ -47,10 +47,12 @@ private:
         if (part.density > 0.0 && !body)
             return fail(density != nullptr ? *density : node, key,
                         "needs a part that encloses a volume: " + geometries_.notClosed(part));
-        if (!part.moves() || scene_.effects.weight.gravity.isZero(0.0)) return;
+        const bool weighs = !scene_.effects.weight.gravity.isZero(0.0);
+        if (!part.moves() || !(weighs || scene_.effects.inertia.any())) return;
         if (density == nullptr && !part.held) return;
+        const char* effect = weighs ? "weight" : "inertia";
         if (density == nullptr)
-            return fail(*nearest(table_, "effects", "weight"), "effects.weight",
+            return fail(*nearest(table_, "effects", effect), fmt::format("effects.{}", effect),
                         fmt::format("needs density_kg_per_m3 of the held part, {}", part.name));
         if (const auto weight = body ? scene::weigh(scene_, *body) : std::nullopt)
             checkShown(part, *weight, *density, key);

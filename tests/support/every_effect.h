@@ -17,20 +17,24 @@ inline scene::Effects everyEffect() {
                               {Quat::Identity(), Vec3(-0.004, 0.002, 0.012)}},
                      .lead = 0.003},
         .snap = {.stiffness = 200.0, .range = 0.02, .X_WG = {{Quat::Identity(), Vec3(0.002, 0.003, 0.012)}}},
+        .inertia = {.scale = 1.0},
+        .keep_apart = {.stiffness = 100.0, .range = 0.03},
         .pick = {},  // no stage: it changes what a hand holds (pick_test.cpp)
         .navigation = {.clutch = {.button = 2},
                        .second_scale = {.button = 3, .scale = 0.5},
                        .drift = {.share = 0.1, .radius = 0.05}},
         .record = true,
     };
-    [[maybe_unused]] const auto& [passivity_damping, transients, weight, viscosity, guidance, snap, pick, navigation,
-                                  record] = effects;
+    [[maybe_unused]] const auto& [passivity_damping, transients, weight, viscosity, guidance, snap, inertia, keep_apart,
+                                  pick, navigation, record] = effects;
     return effects;
 }
 
-/// The same in a scene, whose held parts weigh.
+/// The same in a scene, whose held parts weigh, but for what it cannot have.
 inline void addEveryEffect(scene::SceneSpec& spec) {
     spec.effects = everyEffect();
+    if (spec.contact.method == scene::ContactMethod::Penalty) spec.effects.inertia = {};
+    if (spec.handCount() < 2) spec.effects.keep_apart = {};
     for (scene::PartSpec& part : spec.parts)
         if (part.held) part.density = 7850.0;
 }

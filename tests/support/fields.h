@@ -26,7 +26,7 @@ struct Anything {
     operator T() const;
 };
 
-inline constexpr std::size_t kMostFields = 10;
+inline constexpr std::size_t kMostFields = 11;
 
 /// How many fields the plain struct T has: the most that it can be made from.
 template <class T, class... Field>
@@ -74,9 +74,12 @@ void eachField(T& value, F f) {
     } else if constexpr (count == 9) {
         auto& [a, b, c, d, e, g, h, i, j] = value;
         all(a, b, c, d, e, g, h, i, j);
-    } else {
+    } else if constexpr (count == 10) {
         auto& [a, b, c, d, e, g, h, i, j, k] = value;
         all(a, b, c, d, e, g, h, i, j, k);
+    } else {
+        auto& [a, b, c, d, e, g, h, i, j, k, l] = value;
+        all(a, b, c, d, e, g, h, i, j, k, l);
     }
 }
 

@@ -116,22 +116,27 @@ void printSpared(const scene::Scene& scene) {
          fmt::format("nobody holds either of them; {} of {} parts rest", still, scene.parts.size()));
 }
 
-/// Of a hand's part, if the scene has gravity: what is felt and seen of it, and what is not.
-void printWeight(const scene::Scene& scene, std::size_t hand) {
+/// Of a hand's part, if the scene has gravity or inertia: what is felt and seen of it, and what is not.
+void printMass(const scene::Scene& scene, std::size_t hand) {
     const std::size_t i = scene.spec.heldBy(hand);
     if (i == scene.spec.parts.size()) return;
     const scene::PartSpec& held = scene.spec.parts[i];
-    if (!(held.density > 0.0) || scene.spec.effects.weight.gravity.isZero(0.0)) return;
+    const scene::Effects& effects = scene.spec.effects;
+    if (!(held.density > 0.0) || (effects.weight.gravity.isZero(0.0) && !effects.inertia.any())) return;
     const auto body = scene::massOf(*scene.parts[i], held.density);
-    const auto weight = body ? scene::weigh(scene.spec, *body) : std::nullopt;
-    if (!weight) return;
+    if (!body) return;
+    const auto weight = scene::weigh(scene.spec, *body);
+    if (weight) fmt::print("  {:<22}{} {}\n", "weight", held.name, scene::describe(*weight));
     const Vec3 centre = 1e3 * body->centre, inertia = 1e6 * body->inertia.diagonal();
-    fmt::print("  {:<22}{} {}\n", "weight", held.name, scene::describe(*weight));
+    const std::string rendered = effects.inertia.any()
+                                     ? fmt::format("felt {:.4g} times, {:.3g} g", effects.inertia.scale,
+                                                   1e3 * effects.inertia.scale * body->mass)
+                                     : "not rendered, so that it does not move the border of stability";
     fmt::print(
-        "  {:<22}centre of mass at {:.4g}, {:.4g}, {:.4g} mm; inertia about its x, y, z {:.3g}, {:.3g}, {:.3g} kg "
-        "mm²: not rendered{}\n",
-        "", centre.x(), centre.y(), centre.z(), inertia.x(), inertia.y(), inertia.z(),
-        weight->has_proxy ? ", as the proxy has no mass, so that it does not move the border of stability" : "");
+        "  {:<22}{}centre of mass at {:.4g}, {:.4g}, {:.4g} mm; inertia about its x, y, z {:.3g}, {:.3g}, {:.3g} kg "
+        "mm²: {}\n",
+        weight ? "" : "inertia", weight ? "" : held.name + ": ", centre.x(), centre.y(), centre.z(), inertia.x(),
+        inertia.y(), inertia.z(), rendered);
 }
 
 Result<Done> printStages(const scene::SceneSpec& spec, scene::PartCache& cache, ProgressLine& progress) {
@@ -140,7 +145,7 @@ Result<Done> printStages(const scene::SceneSpec& spec, scene::PartCache& cache, 
     if (!scene) return scene.errors();
     printShapes(spec);
     printHands(spec);
-    for (std::size_t hand = 0; hand < spec.handCount(); ++hand) printWeight(*scene, hand);
+    for (std::size_t hand = 0; hand < spec.handCount(); ++hand) printMass(*scene, hand);
     const scene::GeometryChoice choice = scene::geometryOf(spec);
     fmt::print("  {:<22}{}: {}\n", "geometry of contact", scene::geometryName(choice.geometry), choice.reason);
     fmt::print("  {:<22}{:>10}{:>10}  {}\n", "stage of the tick", "median µs", "p99 µs", "why it runs");

@@ -145,13 +145,17 @@ Layout makeEffectsLayout() {
         const char *key, *what;
     };
     constexpr std::array kNamed{Named{"transients", "the vibration after impacts"},
-                                Named{"weight", "the held part's weight"}, Named{"viscosity", "the viscosity"},
-                                Named{"guidance", "the guide"}, Named{"snap", "the snap into its place"}};
+                                Named{"weight", "the held part's weight"},
+                                Named{"viscosity", "the viscosity"},
+                                Named{"guidance", "the guide"},
+                                Named{"snap", "the snap into its place"},
+                                Named{"inertia", "the held part's inertia"},
+                                Named{"keep_apart", "keeping apart from parts in other hands"}};
     static_assert(kNamed.size() == kWrenchEffects);
     Layout layout;
     layout.add("effects", "uint32", "1",
                "Effects that the scene has: bit 0 transients, bit 1 weight, bit 2 viscosity, bit 3 guidance, "
-               "bit 4 snap",
+               "bit 4 snap, bit 5 inertia, bit 6 keep_apart",
                offsetof(TickRecord, effects));
     layout.add("guided", "float32", "1",
                "Share of its way that the guide has gone, 0 to 1; not a number without a guide",
@@ -166,7 +170,7 @@ Layout makeEffectsLayout() {
                        std::string("Torque that ") + what + " adds, about the held part's origin, likewise",
                        at + 3 * sizeof(float));
     }
-    layout.later_columns = 6;  // snap
+    layout.later_columns = 18;  // snap; inertia and keep_apart
     return layout;
 }
 

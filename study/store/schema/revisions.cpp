@@ -258,6 +258,10 @@ constexpr const char* kRevision22 = R"sql(
 -- Chunks of "effects" have six columns more, of snap.
 )sql";
 
+constexpr const char* kRevision23 = R"sql(
+-- Chunks of "effects" have twelve columns more, of inertia and of keeping apart.
+)sql";
+
 const std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kFirstSchema, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -292,6 +296,8 @@ const std::array kRevisions = {
     Revision{21, "What each effect added to the wrench", kRevision21, 21},
     // A reader from before takes the longer chunks for damage.
     Revision{22, "What snap added to the wrench", kRevision22, 22},
+    // Likewise.
+    Revision{23, "What inertia and keeping apart added to the wrench", kRevision23, 23},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

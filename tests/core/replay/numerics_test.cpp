@@ -65,6 +65,9 @@ constexpr std::uint64_t kGuidance = 0x6e432e1f9b55594eu;
 /// The same with a place that draws the part.
 constexpr std::uint64_t kSnap = 0xa448e8ff80ab833du;
 
+/// The same with inertia.
+constexpr std::uint64_t kInertia = 0x2180c17493badf9eu;
+
 constexpr const char* kParts = R"(
 [[part]]
 name = "plate"
@@ -161,6 +164,8 @@ TEST(Numerics, EveryOutputBitOfFixedScenesIsThatOfItsNumber) {
     EXPECT_EQ(hex(hashOf(spec)), hex(kGuidance)) << "viscosity and guidance" << advice;
     spec.effects.snap = {.stiffness = 300.0, .range = 0.02, .X_WG = {Pose{}}};
     EXPECT_EQ(hex(hashOf(spec)), hex(kSnap)) << "snap" << advice;
+    spec.effects.inertia.scale = 1.0;
+    EXPECT_EQ(hex(hashOf(spec)), hex(kInertia)) << "inertia" << advice;
 }
 
 }  // namespace

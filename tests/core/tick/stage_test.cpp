@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
 #include <set>
 #include <string>
@@ -62,6 +63,7 @@ scene::SceneSpec besideAnother(scene::SceneSpec spec) {
     spec.parts.back().held = true;
     spec.parts.back().hand = 1;
     spec.other_hands.push_back({spec.limits, spec.registration, spec.start_gate});
+    spec.effects.keep_apart = test::everyEffect().keep_apart;
     return spec;
 }
 
@@ -140,9 +142,7 @@ void moveOther(const tick::HandModel& model, HandState& state, int tick) {
 void holdAside(const tick::HandModel& model, HandState& state) {
     state.p_GC = Vec3(0.004, -0.002, 0.003);
     state.X_DG = {rotationFromVector(Vec3(0.1, -0.2, 0.3)), Vec3(0.002, 0.001, -0.003)};
-    state.metric = {model.metric_radius, state.p_GC};
-    if (model.hasClosedForm()) state.solver.measureBy(state.metric);
-    if (model.hasSurfaces()) state.surface->measureBy(state.metric);
+    tick::measureBy(model, std::array{state.p_GC}, state);
 }
 
 struct Checker {
@@ -209,6 +209,14 @@ std::vector<std::string> namesOf(StageList<stage...>) {
     return {stage.card.name...};
 }
 
+/// Where step() asks the part to be.
+Pose targetOf(const tick::HandModel& model, HandState& state, const TickFrame& frame) {
+    if (!model.hasInertia()) return state.X_WR;
+    state.pull = tick::pullOf(model, std::array{state.p_GC}, tick::momentumOf(model, state, state.X_WG));
+    state.pull.springs[0].X_WT = tick::drawnTo(model, state, state.p_GC, state.X_WR, state.X_WG);
+    return frame.relocated ? frame.X_WH : state.pull.restFrom(state.metric, state.X_WG);
+}
+
 /// Ticks of a hand with this model, stage by stage as step() runs them.
 void checkTicks(const tick::HandModel& model, HandState& state, Random& random, std::map<std::string, int>& times) {
     Checker checker{model, random, times, state, state, {}, {}};
@@ -217,7 +225,7 @@ void checkTicks(const tick::HandModel& model, HandState& state, Random& random, 
         frame.reading = readingAt(i, random);
         moveOther(model, state, i);
         for (const tick::Stage& stage : model.stages) {
-            if (!stage.senses) state.X_WT = state.X_WR;
+            if (!stage.senses) state.X_WT = targetOf(model, state, frame);
             state.work = model.hasSurfaces() ? tick::kSurfaceBudget : tick::kFieldBudget;
             if (!state.engaged && !stage.before_start) continue;
             checker.checkThat(tick::AllStages{}, stage.run, state, frame);

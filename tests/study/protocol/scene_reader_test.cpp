@@ -604,6 +604,53 @@ TEST(SceneReader, RefusesSnapBesideWhatItConflictsWith) {
         << errorsOf(with("51", arm + guide));
 }
 
+TEST(SceneReader, ReadsInertiaAndRefusesItBesideWhatItConflictsWith) {
+    // Truth: the rules of KEYS.md. A scale of 0 is no inertia.
+    const auto with = [](const std::string& scale, const std::string& more, bool heavy = true) {
+        std::string parts = kParts;
+        if (heavy) parts.insert(parts.rfind("pose"), "density_kg_per_m3 = 7850\n");
+        return parts + more + "[effects.inertia]\n" + scale;
+    };
+    const auto has = [](const std::string& errors, const char* what) { return errors.find(what) != std::string::npos; };
+    const std::string god_object = "[contact]\nmethod = \"god_object\"\n",
+                      penalty = "[contact]\nmethod = \"penalty\"\n";
+    EXPECT_EQ(errorsOf(with("", god_object)), "");
+    EXPECT_EQ(read(with("", god_object))->effects.inertia.scale, 1.0);
+    EXPECT_EQ(read(with("scale = 2.5\n", god_object))->effects.inertia.scale, 2.5);
+    EXPECT_TRUE(has(errorsOf(with("", penalty)), "effects.inertia.scale: 1 (default): must be 0 with contact.method"))
+        << errorsOf(with("", penalty));
+    EXPECT_EQ(errorsOf(with("scale = 0\n", penalty)), "");
+    EXPECT_TRUE(has(errorsOf(with("", god_object, false)), "effects.inertia: needs density_kg_per_m3 of the held part"))
+        << errorsOf(with("", god_object, false));
+    EXPECT_TRUE(
+        has(errorsOf(with("", "[contact]\nmethod = \"god_object\"\ngeometry = \"field\"\nbudget_nodes = 500\n")),
+            "must be 0 with contact.budget_nodes"));
+}
+
+TEST(SceneReader, ReadsWhatKeepsPartsApartAndRefusesItBesideWhatItConflictsWith) {
+    // Truth: the rules of KEYS.md, and the device's stable maximum, 4000 N/m of "arm".
+    const auto with = [](const std::string& stiffness, const std::string& more) {
+        return handScene("hand = \"left\"", "[[hand]]\nname = \"left\"\n" + more +
+                                                "[effects.keep_apart]\nstiffness_N_per_m = " + stiffness + "\n");
+    };
+    const auto has = [](const std::string& errors, const char* what) { return errors.find(what) != std::string::npos; };
+    const auto scene = read(with("250", ""));
+    ASSERT_TRUE(scene) << errorsOf(with("250", ""));
+    EXPECT_EQ(scene->effects.keep_apart.stiffness, 250.0);
+    EXPECT_DOUBLE_EQ(scene->effects.keep_apart.range, 0.02);
+    EXPECT_TRUE(has(errorsOf(kParts + "[effects.keep_apart]\nstiffness_N_per_m = 100\n"), "must be 0 with one hand"));
+    EXPECT_EQ(errorsOf(kParts + "[effects.keep_apart]\nstiffness_N_per_m = 0\n"), "");
+    EXPECT_TRUE(has(errorsOf(with("250", "[effects.passivity_controller]\nmax_damping_Ns_per_m = 20\n")),
+                    "must be 0 with effects.passivity_controller"));
+    const std::string arm =
+        "[device]\npreset = \"arm\"\n[contact]\nstiffness_N_per_m = 3700\n"
+        "rotational_stiffness_Nm_per_rad = 0\n";
+    EXPECT_EQ(errorsOf(with("300", arm)), "");
+    EXPECT_TRUE(
+        has(errorsOf(with("301", arm)), "effects.keep_apart.stiffness_N_per_m: 301: with contact.stiffness_N_per_m"))
+        << errorsOf(with("301", arm));
+}
+
 TEST(SceneReader, ReadsViscosity) {
     // Truth: the rules of KEYS.md.
     const auto scene = read(kParts + "[effects.viscosity]\ndamping_Ns_per_m = 3\n");

@@ -96,7 +96,7 @@ inline std::vector<TickRecord> withBodies(std::uint64_t seed, std::vector<TickRe
 inline std::vector<TickRecord> withEffects(std::uint64_t seed, std::vector<TickRecord> records) {
     Random random(seed);
     for (TickRecord& r : records) {
-        r.effects = 1u + static_cast<std::uint32_t>(random.below(31));
+        r.effects = 1u + static_cast<std::uint32_t>(random.below(127));
         r.guided = static_cast<float>(random.uniform());
         for (auto& wrench : r.effect_wrench)
             for (float& value : wrench) value = static_cast<float>(random.normal());

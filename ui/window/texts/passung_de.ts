@@ -2283,6 +2283,22 @@
         <translation>effects.snap ist gesetzt: Nahe seinem Platz wird das gehaltene Teil hineingezogen</translation>
     </message>
     <message>
+        <source>inertia</source>
+        <translation>Trägheit</translation>
+    </message>
+    <message>
+        <source>effects.inertia is set: the proxy is a mass on the coupling&apos;s spring</source>
+        <translation>effects.inertia ist gesetzt: Der Proxy ist eine Masse an der Feder der Kopplung</translation>
+    </message>
+    <message>
+        <source>keeping apart</source>
+        <translation>Abstand halten</translation>
+    </message>
+    <message>
+        <source>effects.keep_apart is set: parts in two hands push each other away before they touch</source>
+        <translation>effects.keep_apart ist gesetzt: Teile in zwei Händen stoßen einander ab, bevor sie sich berühren</translation>
+    </message>
+    <message>
         <source>sum of effects</source>
         <translation>Summe der Effekte</translation>
     </message>
