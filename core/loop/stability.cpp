@@ -27,7 +27,9 @@
 //              p(z) = (z - 1)(z - E) z^(d+1) (z² C + z² W) + (c1 z + c0) (z C)(z² W) = 0,   degree d + 5.
 //          Quasi-static: the tool has neither mass nor damper, K (x - y) = k y, so that what the hand feels is the wall
 //          above with k/(K + k) times both K and B.
-// Limits:  k -> infinity: the wall above, whatever M. M = k = 0: nothing is felt.
+// Limits:  k -> infinity: the wall above, whatever M. M = k = 0: nothing is felt. k = 0: W = nu D² has a double root at
+//          z = 1 and (z - 1)(z - E) a single one, so that p has one: handle and tool stay where both are put. It is
+//          divided out, and what is left decides.
 // Invariant: scaling (m, b, B, K) by one factor, or T by s with b, B by 1/s and K by 1/s², changes nothing.
 #include "core/loop/stability.h"
 
@@ -111,6 +113,15 @@ Polynomial characteristicPolynomial(const SampledTool& tool) {
     return p;
 }
 
+/// p/(z - 1). @pre p(1) = 0
+Polynomial withoutRootAtOne(const Polynomial& p) {
+    Polynomial q;
+    q.degree = p.degree - 1;
+    double carried = 0.0;
+    for (auto i = static_cast<std::size_t>(p.degree); i > 0; --i) q.c[i - 1] = carried += p.c[i];
+    return q;
+}
+
 // Schur-Cohn: p has all roots inside the unit circle iff |c_0| < |c_n| and (c_n p(z) - c_0 z^n p(1/z))/z has, too.
 bool rootsInsideUnitCircle(Polynomial p) {
     for (int n = p.degree; n > 0; --n) {
@@ -191,6 +202,33 @@ bool isStable(const SampledTool& tool) {
 double stableStiffnessBorder(const SampledTool& tool) {
     SampledTool probe = tool;
     return borderOf(probe.wall, [&] { return isStable(probe); });
+}
+
+double stableStiffnessBorderInAir(const SampledWall& wall) {
+    constexpr double kStep = 1.5, kLightest = 1e-3, kHeaviest = 1e3;
+    const double alone = stableStiffnessBorder(wall);
+    double least = alone;
+    for (double share = kLightest; share < kHeaviest; share *= kStep) {
+        SampledTool probe{.wall = wall, .contact_stiffness = 0.0, .tool_mass = share * wall.mass};
+        const auto stableAt = [&](double K) {
+            probe.wall.stiffness = K;
+            return rootsInsideUnitCircle(withoutRootAtOne(characteristicPolynomial(probe)));
+        };
+        // A much softer one has roots so near to 1 that rounding decides.
+        constexpr double kSoftest = 0.05, kGrowth = 1.02;
+        double below = kSoftest * alone, above = below;
+        while (above < least && stableAt(above)) {
+            below = above;
+            above *= kGrowth;
+        }
+        if (!(above < least)) continue;
+        for (int i = 0; i < 40; ++i) {
+            const double middle = 0.5 * (below + above);
+            (stableAt(middle) ? below : above) = middle;
+        }
+        least = below;
+    }
+    return least;
 }
 
 double stableStiffnessBorderUpTo(const SampledTool& tool) {

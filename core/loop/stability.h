@@ -44,6 +44,12 @@ double stableStiffnessBorder(const SampledTool& tool);
 /// none is left): it falls and rises with the contact's stiffness, and a contact is as soft as its place makes it.
 double stableStiffnessBorderUpTo(const SampledTool& tool);
 
+/// The border of the coupling's stiffness with a tool of whatever mass that nothing presses (core/tick/inertia.h): the
+/// least over tools of 1/1000 to 1000 times the handle's mass, and no more than the wall's own. That both together stay
+/// where they are put counts as stable. Without delay it is the wall's; with it down to 0.69 of that, with a tool about
+/// as heavy as the handle.
+double stableStiffnessBorderInAir(const SampledWall& wall);
+
 /// The largest stiffness at which the wall can never give out energy [N/m]; 0 if there is none. Stricter than stable.
 double passiveStiffness(const SampledWall& wall);
 

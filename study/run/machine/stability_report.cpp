@@ -34,6 +34,15 @@ loop::SampledWall translationLoop(const DeviceMechanism& m, double damping, int 
             .delay_ticks = delay_ticks};
 }
 
+loop::SampledWall rotationLoop(const DeviceMechanism& m, double damping, int delay_ticks) {
+    return {.mass = m.inertia_kg_m2,
+            .damping = m.rotational_damping_Nms_per_rad,
+            .stiffness = 0,
+            .virtual_damping = damping,
+            .period = kTickSeconds,
+            .delay_ticks = delay_ticks};
+}
+
 }  // namespace
 
 WallBounds translationBounds(const DeviceMechanism& m, double damping, int delay_ticks) {
@@ -41,13 +50,7 @@ WallBounds translationBounds(const DeviceMechanism& m, double damping, int delay
 }
 
 WallBounds rotationBounds(const DeviceMechanism& m, double damping, int delay_ticks) {
-    return boundsOf({.mass = m.inertia_kg_m2,
-                     .damping = m.rotational_damping_Nms_per_rad,
-                     .stiffness = 0,
-                     .virtual_damping = damping,
-                     .period = kTickSeconds,
-                     .delay_ticks = delay_ticks},
-                    m.coulomb_torque_Nm, m.rotational_quantum_rad);
+    return boundsOf(rotationLoop(m, damping, delay_ticks), m.coulomb_torque_Nm, m.rotational_quantum_rad);
 }
 
 bool feltThroughTool(const scene::ContactSpec& contact) {
@@ -68,6 +71,10 @@ SceneWall translationWall(const DeviceDescription& device, const scene::SceneSpe
             .contact_stiffness = bounded ? scale * scene.contact.penalty_stiffness : kRigid * wall.bounds.border,
             .tool_mass = virtual_tool ? scale * scene.contact.tool_mass : 0.0});
     }
+    if (scene.effects.inertia.any())
+        wall.bounds.border = std::min(
+            wall.bounds.border,
+            stableStiffnessBorderInAir(translationLoop(*device.mechanism, scale * scene.contact.damping, delay)));
     return wall;
 }
 
@@ -75,15 +82,18 @@ Errors beyondBorder(const plan::StudyPlan& plan, std::span<const DeviceDescripti
     Errors errors;
     for (const plan::Condition& condition : plan.conditions) {
         const DeviceDescription* device = deviceNamed(condition.device, devices);
-        if (device == nullptr || condition.allow_unstable || !feltThroughTool(condition.scene.contact)) continue;
+        if (device == nullptr || condition.allow_unstable) continue;
+        const bool moves_on = condition.scene.effects.inertia.any();
+        if (!moves_on && !feltThroughTool(condition.scene.contact)) continue;
         const SceneWall wall = translationWall(*device, condition.scene);
         if (!device->mechanism || wall.stiffness < wall.bounds.border) continue;
-        Error error{.message = fmt::format("must be below {:.4g} N/m, where {} is no longer stable through this "
-                                           "coupling's tool; allow_unstable = true lifts this",
-                                           wall.bounds.border, device->name),
-                    .file = plan.source_path,
-                    .key = "condition " + condition.name + ": contact.stiffness_N_per_m",
-                    .value = fmt::format("{:.6g}", wall.stiffness)};
+        Error error{
+            .message = fmt::format("must be below {:.4g} N/m, where {} is no longer stable through this "
+                                   "coupling's {}; allow_unstable = true lifts this",
+                                   wall.bounds.border, device->name, moves_on ? "mass (effects.inertia)" : "tool"),
+            .file = plan.source_path,
+            .key = "condition " + condition.name + ": contact.stiffness_N_per_m",
+            .value = fmt::format("{:.6g}", wall.stiffness)};
         const bool told = std::any_of(errors.begin(), errors.end(), [&](const Error& other) {
             return other.message == error.message && other.value == error.value;
         });
@@ -94,9 +104,13 @@ Errors beyondBorder(const plan::StudyPlan& plan, std::span<const DeviceDescripti
 
 SceneWall rotationWall(const DeviceDescription& device, const scene::SceneSpec& scene) {
     SceneWall wall{.stiffness = scene.contact.rotational_stiffness, .bounds = {}};
-    if (device.mechanism)
-        wall.bounds = rotationBounds(*device.mechanism, scene.contact.rotational_damping,
-                                     device.delay_ticks + scene.limits.delay_ticks);
+    if (!device.mechanism) return wall;
+    const int delay = device.delay_ticks + scene.limits.delay_ticks;
+    wall.bounds = rotationBounds(*device.mechanism, scene.contact.rotational_damping, delay);
+    if (scene.effects.inertia.any())
+        wall.bounds.border = std::min(
+            wall.bounds.border,
+            stableStiffnessBorderInAir(rotationLoop(*device.mechanism, scene.contact.rotational_damping, delay)));
     return wall;
 }
 

@@ -29,7 +29,7 @@ struct SceneWall {
 };
 /// A coupled penalty: translation's border is then the exact one through the tool, over all contacts that the scene can
 /// make: up to `penalty_stiffness`, or, with variants whose stiffness depends on how many points touch, up to a rigid
-/// one.
+/// one. Of a scene with inertia both are those with a mass in the air too, whichever it is.
 bool feltThroughTool(const scene::ContactSpec& contact);
 SceneWall translationWall(const DeviceDescription& device, const scene::SceneSpec& scene);
 SceneWall rotationWall(const DeviceDescription& device, const scene::SceneSpec& scene);

@@ -57,13 +57,15 @@ double growth(const SampledWall& w, int ticks) {
     return grown.value();
 }
 
-/// The same in front of a tool that implicit Euler moves between coupling and contact.
+/// The same in front of a tool that implicit Euler moves between coupling and contact; in the air the handle is pushed,
+/// and it is the coupling's stretch that is watched: where both drift to is no swing.
 double growth(const SampledTool& tool, int ticks) {
+    const bool in_air = tool.contact_stiffness == 0.0;
     const SampledWall& w = tool.wall;
     const double a = w.damping / w.mass, E = std::exp(-a * w.period), T = w.period;
     const double vx = (1 - E) / a, fv = (1 - E) / w.damping, fx = (T - vx) / w.damping;
     std::array<double, 8> forces{};  // newest first
-    double x = 1e-3, v = 0, x_before = x, y = x, y_before = y, e_before = 0;
+    double x = 1e-3, v = in_air ? 0.1 : 0.0, x_before = x, y = x, y_before = y, e_before = 0;
     Growth grown(ticks);
     for (int k = 0; k < ticks; ++k) {
         const double B = w.virtual_damping / T, M = tool.tool_mass / (T * T);
@@ -80,7 +82,7 @@ double growth(const SampledTool& tool, int ticks) {
         const double force = forces[static_cast<std::size_t>(w.delay_ticks)];
         x += vx * v + fx * force;
         v = E * v + fv * force;
-        if (!grown.note(k, x)) break;
+        if (!grown.note(k, in_air ? e : x)) break;
     }
     return grown.value();
 }
@@ -168,6 +170,38 @@ TEST(Stability, NoContactUpToTheStiffestMakesACoupledSwingGrow) {
     };
     EXPECT_EQ(growing(0.98), 0);
     EXPECT_GT(growing(1.02), 0);
+}
+
+TEST(Stability, NoMassInTheAirMakesACoupledSwingGrow) {
+    // Truth: independent program, as above: below the border the swing with every mass dies out, above it some grows.
+    // Without delay it is no lower than the wall's.
+    for (const int delay : {0, 1, 3})
+        for (const double damping : {0.0, 2.0}) {
+            const SampledWall wall{.mass = 0.4, .damping = 5.0, .virtual_damping = damping, .delay_ticks = delay};
+            const double border = stableStiffnessBorderInAir(wall), alone = stableStiffnessBorder(wall);
+            const auto growing = [&](double share) {
+                int found = 0;
+                for (double mass = 4e-4; mass < 400.0; mass *= 1.5) {
+                    SampledTool tool{wall, 0.0, mass};
+                    tool.wall.stiffness = share * border;
+                    found += growth(tool, 40000) < 1 ? 0 : 1;
+                }
+                return found;
+            };
+            std::printf("delay %d, B %.0f: border in the air %.0f, of the wall %.0f N/m\n", delay, damping, border,
+                        alone);
+            EXPECT_EQ(growing(0.97), 0) << delay << damping;
+            EXPECT_LE(border, alone);
+            if (border < alone) {
+                EXPECT_GT(growing(1.03), 0) << delay << damping;
+            }
+            if (delay == 0) {
+                EXPECT_EQ(border, alone);
+            } else if (damping == 0.0) {
+                EXPECT_LT(border, 0.98 * alone);
+            }
+        }
+    EXPECT_EQ(stableStiffnessBorderInAir(SampledWall{.mass = -1.0}), 0);
 }
 
 TEST(Stability, AToolAgainstARigidWallIsTheWallAndASoftContactIsTwoSpringsInARow) {
