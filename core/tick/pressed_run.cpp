@@ -104,4 +104,15 @@ TickOutput PressedRun::step(const DeviceReading& reading, const StageWatch* watc
     return outputs_.front();
 }
 
+std::uint32_t PressedRun::mostWork() const noexcept {
+    const HandModel& hand = models_[0].hands.front();
+    const bool capped =
+        hand.hasSurfaces() || (hand.hasFieldProxy() && hand.contact.method != scene::ContactMethod::Penalty);
+    return capped ? tick::mostWork(hand) : 0;
+}
+
+std::uint32_t PressedRun::workDone(const TickOutput& output) const noexcept {
+    return tick::workDone(models_[0].hands.front(), output.frame);
+}
+
 }  // namespace passung::tick

@@ -25,6 +25,11 @@ public:
     /// One tick, what it gives the first hand. rt-safe.
     TickOutput step(const DeviceReading& reading, const StageWatch* watch = nullptr) noexcept;
 
+    /// What caps the looks of a tick, as tick_model.h counts them; 0: nothing, closed forms and the penalty look once.
+    std::uint32_t mostWork() const noexcept;
+    /// Of them, the first hand's in the tick that gave this. rt-safe.
+    std::uint32_t workDone(const TickOutput& output) const noexcept;
+
 private:
     SceneModels models_;             // of the one scene
     std::vector<TickState> states_;  // its one

@@ -17,6 +17,13 @@ const HandModel& TickModel::hand(std::size_t hand, std::size_t body, bool follow
     return body == kNoBody ? carrying[hand].back() : carrying[hand][placeOf(body)];
 }
 
+std::uint32_t mostWork(const HandModel& model) noexcept {
+    return model.geometry == scene::Geometry::Surface ? static_cast<std::uint32_t>(kSurfaceBudget) : kFieldBudget;
+}
+std::uint32_t workDone(const HandModel& model, const TickFrame& frame) noexcept {
+    return model.hasSurfaces() ? frame.nodes_visited : frame.work;
+}
+
 TickModel makeModel(const scene::Scene& scene) {
     const scene::SceneSpec& spec = scene.spec;
     TickModel model;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -33,6 +34,13 @@ struct TickModel {
     /// A hand with what it holds. @pre it can hold that
     const HandModel& hand(std::size_t hand, std::size_t body, bool follows = false) const noexcept;
 };
+
+struct TickFrame;
+
+/// What looks at fields or surfaces may take in a tick, of all hands together, and what they took in this one [units of
+/// proxy.h and surface_follow.h]. What is left of them goes on in the next tick. rt-safe.
+std::uint32_t mostWork(const HandModel& model) noexcept;
+std::uint32_t workDone(const HandModel& model, const TickFrame& frame) noexcept;
 
 /// What the scene fixes. `scene` must outlive the result.
 TickModel makeModel(const scene::Scene& scene);

@@ -155,6 +155,11 @@ Result<Done> printStages(const scene::SceneSpec& spec, scene::PartCache& cache, 
     fmt::print("  {:<22}{:>10.1f}{:>10.1f}  {}: most {:.1f} µs; processor time of {} ticks {}, the least of {} runs\n",
                "whole tick", tick.median_us, tick.p99_us, tick.fits() ? "fits 1 kHz here" : "does not fit 1 kHz here",
                tick.most_us, tick.ticks, tick.in_contact ? "in contact" : "without contact", run::TickCost::kRuns);
+    if (tick.work_cap > 0)
+        fmt::print(
+            "  {:<22}{} units of work, of which these ticks took {} at most; one that takes all of them: about {:.0f} "
+            "µs here, what is left goes on in the next\n",
+            "cap of a tick", tick.work_cap, tick.most_work, tick.at_cap_us);
     printSpared(*scene);
     return Done{};
 }

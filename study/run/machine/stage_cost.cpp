@@ -45,11 +45,18 @@ public:
         const tick::StageWatch watch{&StageTimes::after, this};
         std::fill(last_tick_.begin(), last_tick_.end(), 0);
         last_ = processorTime();
-        return run.step(reading, &watch).frame.contacts > 0;
+        const tick::TickOutput output = run.step(reading, &watch);
+        last_work_ = run.workDone(output);
+        return output.frame.contacts > 0;
     }
-    void count() { all_.insert(all_.end(), last_tick_.begin(), last_tick_.end()); }
+    void count() {
+        all_.insert(all_.end(), last_tick_.begin(), last_tick_.end());
+        work_.push_back(last_work_);
+    }
 
     const std::vector<std::int64_t>& all() const { return all_; }
+    /// Of each tick that counts: the same in equal runs [units].
+    const std::vector<std::uint32_t>& work() const { return work_; }
 
 private:
     static void after(void* context, const tick::Stage& stage) noexcept {
@@ -62,11 +69,13 @@ private:
 
     std::span<const tick::Stage> stages_;
     std::vector<std::int64_t> last_tick_, all_;
+    std::uint32_t last_work_ = 0;
+    std::vector<std::uint32_t> work_;
     std::int64_t last_ = 0, asking_ = timeOfAsking();
 };
 
-/// The times of one run; `contact`: of ticks in contact only.
-std::vector<std::int64_t> timesOfRun(const scene::Scene& scene, std::span<const tick::Stage> stages, bool contact) {
+/// One run; `contact`: of ticks in contact only.
+StageTimes timesOfRun(const scene::Scene& scene, std::span<const tick::Stage> stages, bool contact) {
     constexpr int kApproachTicks = tick::PressedRun::kApproachTicks;
     tick::PressedRun run(scene);
     StageTimes times(stages);
@@ -77,17 +86,43 @@ std::vector<std::int64_t> timesOfRun(const scene::Scene& scene, std::span<const 
         times.count();
         ++counted;
     }
-    return times.all();
+    return times;
 }
 
-/// The least of equal runs, time by time.
-std::vector<std::int64_t> leastTimes(const scene::Scene& scene, std::span<const tick::Stage> stages, bool contact) {
-    std::vector<std::int64_t> least = timesOfRun(scene, stages, contact);
+/// What equal runs took.
+struct RunTimes {
+    std::vector<std::int64_t> least;  // time by time
+    std::vector<std::uint32_t> work;
+};
+
+RunTimes leastTimes(const scene::Scene& scene, std::span<const tick::Stage> stages, bool contact) {
+    const StageTimes first = timesOfRun(scene, stages, contact);
+    RunTimes times{first.all(), first.work()};
+    std::vector<std::int64_t>& least = times.least;
     for (int run = 1; run < TickCost::kRuns && !least.empty(); ++run) {
-        const std::vector<std::int64_t> again = timesOfRun(scene, stages, contact);
+        const StageTimes next = timesOfRun(scene, stages, contact);
+        const std::vector<std::int64_t>& again = next.all();
         for (std::size_t i = 0; i < std::min(least.size(), again.size()); ++i) least[i] = std::min(least[i], again[i]);
     }
-    return least;
+    return times;
+}
+
+/// Where the least-squares line through the ticks' times is at `work` [µs]; a line that falls counts as level.
+double timeAt(double work, std::span<const std::int64_t> ticks, std::span<const std::uint32_t> works) {
+    double mean_work = 0.0, mean_time = 0.0, across = 0.0, along = 0.0;
+    const auto count = static_cast<double>(ticks.size());
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+        mean_work += works[i] / count;
+        mean_time += 1e-3 * static_cast<double>(ticks[i]) / count;
+    }
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+        const double w = works[i] - mean_work;
+        across += w * (1e-3 * static_cast<double>(ticks[i]) - mean_time);
+        along += w * w;
+    }
+    // Where all ticks did the same, as if all of their time were work.
+    const double slope = along > 0.0 ? across / along : mean_time / std::max(mean_work, 1.0);
+    return mean_time + std::max(slope, 0.0) * (work - mean_work);
 }
 
 /// The smallest of the times below or at which the share `q` of them lies [µs].
@@ -139,11 +174,12 @@ TickCost measureTick(const scene::Scene& scene) {
     const std::vector<tick::Stage> stages = models.stages(0);
     TickCost cost;
     cost.in_contact = scene.parts.size() > 1;
-    std::vector<std::int64_t> times = leastTimes(scene, stages, cost.in_contact);
-    if (times.empty()) {
+    RunTimes runs = leastTimes(scene, stages, cost.in_contact);
+    if (runs.least.empty()) {
         cost.in_contact = false;
-        times = leastTimes(scene, stages, false);
+        runs = leastTimes(scene, stages, false);
     }
+    const std::vector<std::int64_t>& times = runs.least;
     const std::size_t ticks = stages.empty() ? 0 : times.size() / stages.size();
     cost.ticks = static_cast<int>(ticks);
     std::vector<std::int64_t> whole(ticks, 0);
@@ -155,6 +191,11 @@ TickCost measureTick(const scene::Scene& scene) {
         }
         cost.stages.push_back(
             {stages[s].name, stages[s].reason, quantileOf(of_stage, 0.5), quantileOf(std::move(of_stage), 0.99)});
+    }
+    cost.work_cap = tick::PressedRun(scene).mostWork();
+    if (cost.work_cap > 0 && ticks > 0) {
+        cost.most_work = *std::max_element(runs.work.begin(), runs.work.end());
+        cost.at_cap_us = timeAt(cost.work_cap, whole, runs.work);
     }
     cost.median_us = quantileOf(whole, 0.5);
     cost.p99_us = quantileOf(whole, 0.99);

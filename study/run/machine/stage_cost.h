@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,10 @@ struct TickCost {
     double median_us = 0.0, p99_us = 0.0, most_us = 0.0;  // of all stages together
     int ticks = 0;                                        // that were counted
     bool in_contact = false;                              // only ticks in contact were; else free ones
+    // Of scenes whose proxy looks at fields or surfaces; 0: nothing is capped
+    std::uint32_t work_cap = 0;   // units of work that a tick's looks may take
+    std::uint32_t most_work = 0;  // that one took here
+    double at_cap_us = 0.0;       // what a tick would take that takes all of it: by the line through these ticks
 
     static constexpr int kRuns = 3;            // a tick's time is the least of so many equal runs
     static constexpr int kWantedTicks = 2000;  // of contact

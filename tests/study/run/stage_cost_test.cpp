@@ -65,6 +65,26 @@ TEST(TickCost, IsOfThousandsOfTicksInContactAndOneVerdict) {
     EXPECT_FALSE(slow.fits());
 }
 
+TEST(TickCost, TellsWhatATickAtTheCapOfItsWorkTakes) {
+    // Truth: invariant: beyond the longest tick that did less, and the line through the ticks of a scene that works up
+    // to its cap comes near what its longest ticks took. Closed forms have no cap.
+    scene::PartCache cache;
+    auto spec = pegOverPlate();
+    spec.contact.method = scene::ContactMethod::GodObject;
+    spec.contact.geometry = scene::Geometry::Surface;
+    const auto scene = scene::buildScene(spec, cache);
+    ASSERT_TRUE(scene) << toString(scene.errors()[0]);
+    const TickCost cost = measureTick(*scene);
+    EXPECT_EQ(cost.work_cap, 38000u);
+    EXPECT_GT(cost.most_work, 0u);
+    EXPECT_LE(cost.most_work, cost.work_cap);
+    EXPECT_GT(cost.at_cap_us, cost.median_us);
+    spec.contact.geometry = scene::Geometry::ClosedForm;
+    const auto smooth = scene::buildScene(spec, cache);
+    ASSERT_TRUE(smooth) << toString(smooth.errors()[0]);
+    EXPECT_EQ(measureTick(*smooth).work_cap, 0u);
+}
+
 TEST(TickCost, DoesNotCountOtherPrograms) {
     // Truth: invariant (processor time of equal work): under a load that lets a thread wait for milliseconds in one
     // tick of a hundred the 99th percentile stays where it was. The factor is what shared caches may cost.
