@@ -9,8 +9,8 @@ namespace passung::cli {
 int feasible(const FeasibleArguments& options) {
     const auto program = findOtherProgram("passung-feasible");
     if (program.empty())
-        return fail({{.message = "the program passung-feasible is neither beside this one nor in build/release; it is "
-                                 "built where OMPL is found (Debian: libompl-dev)"}});
+        return fail({{.message = "the program passung-feasible is neither beside this one nor in build/release; "
+                                 "`./dev build passung-feasible` makes it (needs Debian's libompl-dev)"}});
     return fail(becomeProgram(
         program, {options.protocol, options.out, std::to_string(options.seed), fmt::format("{}", options.seconds),
                   fmt::format("{}", options.import_limits.processor_s), std::to_string(options.import_limits.memory)}));
