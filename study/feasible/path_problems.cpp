@@ -18,7 +18,8 @@ std::vector<StandingPart> othersThan(std::size_t part, const std::vector<Pose>& 
     return standing;
 }
 
-std::vector<PathProblem> assemblyProblems(const scene::SceneSpec& scene) {
+/// `asked`: in the order of the scene's.
+std::vector<PathProblem> assemblyProblems(const scene::SceneSpec& scene, const std::vector<plan::AskedStep>& asked) {
     std::vector<PathProblem> problems;
     std::vector<Pose> X_WP;
     for (const scene::PartSpec& part : scene.parts) X_WP.push_back(part.X_WP);
@@ -27,7 +28,7 @@ std::vector<PathProblem> assemblyProblems(const scene::SceneSpec& scene) {
         const scene::AssemblyStep& step = steps[i];
         const Pose X_start = X_WP[step.part];
         const Pose X_goal = scene::nearestGoal(X_start, scene::goalOf(step, X_WP), step.folds);
-        problems.push_back({scene.parts[step.part].name, step.part, X_start, X_goal, othersThan(step.part, X_WP)});
+        problems.push_back({asked[i].name, step.part, X_start, X_goal, othersThan(step.part, X_WP)});
         X_WP[step.part] = X_goal;
     }
     return problems;
@@ -61,7 +62,8 @@ std::string partText(const scene::PartSpec& part) {
 }  // namespace
 
 std::vector<PathProblem> problemsOf(const plan::Condition& condition) {
-    if (std::holds_alternative<plan::AssemblyTask>(condition.task.form)) return assemblyProblems(condition.scene);
+    if (const auto* assembly = std::get_if<plan::AssemblyTask>(&condition.task.form))
+        return assemblyProblems(condition.scene, assembly->steps);
     if (const auto* peg = std::get_if<plan::PegInHoleTask>(&condition.task.form)) return pegProblems(condition, *peg);
     return {};
 }

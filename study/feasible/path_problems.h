@@ -18,7 +18,7 @@ struct StandingPart {
 
 /// A step of a trial as a question: does a path lead from the start to the goal?
 struct PathProblem {
-    std::string name;      // of the part
+    std::string name;      // of the step; of a peg_in_hole the part's
     std::size_t part = 0;  // that moves: its place in the scene
     Pose X_WStart, X_WGoal;
     std::vector<StandingPart> standing;

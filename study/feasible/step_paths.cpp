@@ -58,6 +58,7 @@ Result<StepPath> pathOf(const scene::SceneSpec& scene, const PathProblem& proble
     if (!parts) return parts.errors();
     StepPath answer;
     answer.name = problem.name;
+    answer.part = scene.parts[problem.part].name;
     auto overlap = overlapAt(problem.X_WGoal, "goal", scene, problem, *parts, bodies);
     if (!overlap) overlap = overlapAt(problem.X_WStart, "start", scene, problem, *parts, bodies);
     if (overlap) {

@@ -16,7 +16,8 @@ namespace passung::feasible {
 
 /// What was found out of a step.
 struct StepPath {
-    std::string name;  // of the part
+    std::string name;  // of the problem
+    std::string part;  // that moves
     bool found = false;
     std::string why;                // none was found, in words
     bool is_proof = false;          // there is none: an end overlaps

@@ -420,6 +420,11 @@ private:
         sub->add_option("--out", feasible_.out,
                         "folder for the paths: paths_N.csv of each distinct geometry, with a row for each waypoint, "
                         "and geometries.csv, which says whose it is");
+        auto* json = sub->add_flag("--json", feasible_.json,
+                                   "print JSON in place of the table, in SI units, with what is proven of each path");
+        sub->add_flag("--keys", feasible_.keys,
+                      "print the path's length of each step of an assembly as a line for its [[task.step]]")
+            ->excludes(json);
         sub->add_option("--seed", feasible_.seed, "of the searches, from 1; default 1")
             ->check(between(1, 4294967295.0, "a whole number from 1 to 4294967295"));
         sub->add_option("--seconds", feasible_.seconds, "most time to search a step's path; default 30")

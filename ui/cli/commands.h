@@ -217,6 +217,8 @@ int bench(const BenchArguments& options);
 
 struct FeasibleArguments {
     std::string protocol;
+    bool json = false;       // in place of the table
+    bool keys = false;       // lines for the protocol follow the table
     std::string out;         // folder; empty: none
     std::uint32_t seed = 1;  // > 0
     double seconds = 30.0;   // of each step's search, > 0

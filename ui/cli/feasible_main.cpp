@@ -1,14 +1,11 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <initializer_list>
 #include <map>
-#include <numbers>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -18,39 +15,35 @@
 #include "study/run/files/builds.h"
 #include "study/run/files/protocol_files.h"
 #include "ui/cli/console.h"
+#include "ui/cli/path_report.h"
 #include "ui/cli/safe_output.h"
 
-// The program passung-feasible: `passung feasible` becomes it, so that nothing else loads OMPL. Words: PROTOCOL OUT
-// SEED SECONDS IMPORT_SECONDS IMPORT_BYTES; OUT may be empty.
+// The program passung-feasible: `passung feasible` becomes it, so that nothing else loads OMPL. Words: PROTOCOL FORM
+// OUT SEED SECONDS IMPORT_SECONDS IMPORT_BYTES; OUT may be empty.
 
 namespace {
 
 using namespace passung;
 
-constexpr int kWords = 7;
-constexpr double kDegrees = 180.0 / std::numbers::pi;
+using cli::GeometryGroup;
+
+constexpr int kWords = 8;
 
 struct Words {
-    std::string protocol, out;
+    std::string protocol;
+    std::string form;  // table; keys: lines for the protocol follow it; json: in place of it
+    std::string out;
     feasible::Settings settings;
     run::ImportLimits import_limits;
 };
 
 Words wordsOf(char** argv) {
-    Words words{argv[1], argv[2], {}, {}};
-    words.settings.seed = static_cast<std::uint32_t>(std::strtoul(argv[3], nullptr, 10));
-    words.settings.seconds = std::strtod(argv[4], nullptr);
-    words.import_limits = {std::strtod(argv[5], nullptr), std::strtoull(argv[6], nullptr, 10)};
+    Words words{argv[1], argv[2], argv[3], {}, {}};
+    words.settings.seed = static_cast<std::uint32_t>(std::strtoul(argv[4], nullptr, 10));
+    words.settings.seconds = std::strtod(argv[5], nullptr);
+    words.import_limits = {std::strtod(argv[6], nullptr), std::strtoull(argv[7], nullptr, 10)};
     return words;
 }
-
-/// Conditions of one geometry, and what was found out for them.
-struct GeometryGroup {
-    std::vector<std::string> conditions;
-    const scene::SceneSpec* scene = nullptr;
-    std::vector<feasible::PathProblem> problems;
-    std::vector<feasible::StepPath> paths = {};
-};
 
 std::vector<GeometryGroup> groupsOf(const plan::StudyPlan& plan) {
     std::vector<GeometryGroup> groups;
@@ -65,37 +58,6 @@ std::vector<GeometryGroup> groupsOf(const plan::StudyPlan& plan) {
         groups[at->second].conditions.push_back(condition.name);
     }
     return groups;
-}
-
-void printHead(const GeometryGroup& group) {
-    constexpr std::size_t kNamed = 4;
-    const auto named = std::span(group.conditions).first(std::min(kNamed, group.conditions.size()));
-    const std::size_t more = group.conditions.size() - named.size();
-    fmt::print("\nconditions {}{}\n", printable(fmt::format("{}", fmt::join(named, ", "))),
-               more > 0 ? fmt::format(" and {} more", more) : "");
-    fmt::print("  {:<16}{:<7}{:>10}{:>10}{:>14}{:>9}  {}\n", "step", "path", "length mm", "turn deg", "clearance um",
-               "seconds", "nearest");
-}
-
-void printPath(const feasible::StepPath& path) {
-    if (!path.found) {
-        fmt::print("  {:<16}{:<7}{:>10}{:>10}{:>14}{:>9.1f}\n", printable(path.name), "none", "-", "-", "-",
-                   path.seconds);
-        return;
-    }
-    const path::PathMeasures& of = path.measures;
-    const Vec3 at = 1e3 * of.least.where;
-    const std::string where = path.nearest.empty() ? "nothing within 10 mm"
-                                                   : fmt::format("{} at {:.4g}, {:.4g}, {:.4g} mm",
-                                                                 printable(path.nearest), at.x(), at.y(), at.z());
-    constexpr double kTouching = 2e-6;  // [m]
-    std::string proven;
-    if (of.proven > 0.0)
-        proven = fmt::format("; nowhere less than {:.1f} um", 1e6 * of.proven);
-    else if (of.least.distance < kTouching)
-        proven = "; slides along contacts";
-    fmt::print("  {:<16}{:<7}{:>10.1f}{:>10.1f}{:>14.1f}{:>9.1f}  {}{}\n", printable(path.name), "found",
-               1e3 * of.length, kDegrees * of.turn, 1e6 * of.least.distance, path.seconds, where, proven);
 }
 
 exporter::Table tableOf(std::initializer_list<const char*> columns) {
@@ -155,6 +117,28 @@ Errors missing(const std::string& protocol, const std::vector<GeometryGroup>& gr
     return errors;
 }
 
+/// Searches all paths and prints them as they are found, unless they are printed as JSON.
+Result<Done> searchAll(const Words& words, scene::BuildStore* builds, std::vector<GeometryGroup>& groups,
+                       cli::ProgressLine& progress) {
+    const bool prints = words.form != "json";
+    scene::PartCache cache(builds);
+    truth::OverlapBodies bodies;
+    for (GeometryGroup& group : groups) {
+        if (prints) cli::printHead(group);
+        for (const feasible::PathProblem& problem : group.problems) {
+            progress.show("searching a path for " + printable(problem.name));
+            const auto path = feasible::pathOf(*group.scene, problem, cache, bodies, words.settings);
+            if (!path) return path.errors();
+            progress.show("");
+            if (prints) cli::printPath(*path);
+            std::fflush(stdout);
+            group.paths.push_back(*path);
+        }
+        if (words.form == "keys") cli::printKeys(group);
+    }
+    return Done{};
+}
+
 int search(const Words& words) {
     cli::ProgressLine progress;
     const auto store = run::openBuilds(words.import_limits, cli::showBuilds(progress));
@@ -162,25 +146,13 @@ int search(const Words& words) {
         progress.whileReading(words.protocol, [&] { return run::readProtocol(words.protocol, words.import_limits); });
     if (!plan) return cli::fail(plan.errors());
     std::vector<GeometryGroup> groups = groupsOf(*plan);
-    if (groups.empty()) {
+    if (groups.empty() && words.form != "json") {
         fmt::print("there is nothing to search: no condition is an assembly or a peg_in_hole\n");
         return 0;
     }
     feasible::seed(words.settings);
-    scene::PartCache cache(store.get());
-    truth::OverlapBodies bodies;
-    for (GeometryGroup& group : groups) {
-        printHead(group);
-        for (const feasible::PathProblem& problem : group.problems) {
-            progress.show("searching a path for " + printable(problem.name));
-            const auto path = feasible::pathOf(*group.scene, problem, cache, bodies, words.settings);
-            if (!path) return cli::fail(path.errors());
-            progress.show("");
-            printPath(*path);
-            std::fflush(stdout);
-            group.paths.push_back(*path);
-        }
-    }
+    if (const auto done = searchAll(words, store.get(), groups, progress); !done) return cli::fail(done.errors());
+    if (words.form == "json") fmt::print("{}", cli::pathsJson(groups));
     if (!words.out.empty())
         if (const auto done = write(words.out, groups); !done) return cli::fail(done.errors());
     const Errors errors = missing(words.protocol, groups);

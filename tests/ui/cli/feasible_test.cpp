@@ -33,10 +33,43 @@ struct Placed {
     Pose X;
 };
 
+/// What a step's object has under this key, as text; empty: no such step or key.
+std::string valueIn(const std::string& json, const std::string& step, const std::string& key) {
+    const std::size_t begin = json.find("{\"step\":\"" + step + "\""), end = json.find("search_s", begin);
+    const std::string word = "\"" + key + "\":";
+    const std::size_t at = json.find(word, begin);
+    if (begin == std::string::npos || at == std::string::npos || at > end) return {};
+    const std::size_t from = at + word.size();
+    return json.substr(from, json.find_first_of(json[from] == '"' ? "\"" : ",}", from + 1) - from);
+}
+double numberIn(const std::string& json, const std::string& step, const std::string& key) {
+    const std::string text = valueIn(json, step, key);
+    return text.empty() ? -1.0 : std::stod(text);
+}
+
+/// A box with its centre at the origin [mm].
+std::string boxOff(double width, double depth, double height) {
+    std::string text = "OFF\n8 12 0\n";
+    for (int i = 0; i < 8; ++i)
+        text += std::to_string((i & 1 ? 0.5 : -0.5) * width) + " " + std::to_string((i & 2 ? 0.5 : -0.5) * depth) +
+                " " + std::to_string((i & 4 ? 0.5 : -0.5) * height) + "\n";
+    return text +
+           "3 0 2 1\n3 1 2 3\n3 4 5 6\n3 5 7 6\n3 0 1 4\n3 1 5 4\n3 2 6 3\n3 3 6 7\n3 0 4 2\n3 2 4 6\n3 1 3 5\n3 3 7 "
+           "5\n";
+}
+
+void replace(std::string& text, const std::string& what, const std::string& by) {
+    ASSERT_NE(text.find(what), std::string::npos) << what;
+    text.replace(text.find(what), what.size(), by);
+}
+
 class Feasible : public testing::Test {
 protected:
-    Ended search(const std::string& protocol, const std::string& seconds = "20") const {
-        return runProgram(folder_.path(), {"feasible", protocol, "--seconds", seconds, "--out", "out"});
+    Ended search(const std::string& protocol, const std::string& seconds = "20",
+                 const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> words{"feasible", protocol, "--seconds", seconds, "--out", "out"};
+        words.insert(words.end(), more.begin(), more.end());
+        return runProgram(folder_.path(), words);
     }
     /// Waypoints of each part's step, in the order of the file.
     std::map<std::string, std::vector<Pose>> paths() const {
@@ -167,6 +200,53 @@ TEST_F(Feasible, APartInAClosedBoxIsToldWithoutProof) {
     EXPECT_EQ(ended.exit_code, 1);
     EXPECT_NE(ended.err.find("step lid"), std::string::npos) << ended.err;
     EXPECT_NE(ended.err.find("no path found within 3 s (no proof)"), std::string::npos) << ended.err;
+}
+
+TEST_F(Feasible, JsonSaysWhatTheWrittenPathsSay) {
+    // Truth: sums over the waypoints of paths_1.csv; closed form: the bore leaves 0.2 mm all round, and the block, here
+    // a mesh, ends 0.5 mm above the base. Only what is found from triangles comes with a proof.
+    std::string text = pageStudy();
+    replace(text, "shape = { kind = \"box\", width = 20, depth = 20, height = 10 }", "mesh = \"block.off\"");
+    replace(text, "part = \"pin\"\n", "part = \"pin\"\nname = \"pin in\"\n");
+    writeText(folder_ / "block.off", boxOff(20, 20, 10));
+    writeText(folder_ / "study.toml", text);
+    const Ended ended = search("study.toml", "20", {"--json"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    EXPECT_EQ(ended.out.find("{\"geometries\":["), 0u) << ended.out;
+    EXPECT_EQ(valueIn(ended.out, "pin in", "part"), "\"pin");
+    EXPECT_NEAR(numberIn(ended.out, "block", "clearance_m"), 0.0005, 2e-6) << ended.out;
+    EXPECT_EQ(valueIn(ended.out, "block", "nearest"), "\"base") << ended.out;
+    const double proven = numberIn(ended.out, "block", "proven_clearance_m");
+    EXPECT_GT(proven, 0.0) << ended.out;
+    EXPECT_LE(proven, 0.0005 + 2e-6);
+    const auto found = paths();
+    ASSERT_EQ(found.size(), 3u);
+    for (const auto& [step, path] : found) {
+        double length = 0.0, turn = 0.0;
+        for (std::size_t i = 1; i < path.size(); ++i) {
+            length += (path[i].p - path[i - 1].p).norm();
+            turn += path[i - 1].q.angularDistance(path[i].q);
+        }
+        EXPECT_NEAR(numberIn(ended.out, step, "length_m"), length, 1e-9) << step;
+        EXPECT_NEAR(numberIn(ended.out, step, "turn_rad"), turn, 1e-7) << step;
+        EXPECT_EQ(valueIn(ended.out, step, "found"), "true");
+    }
+}
+
+TEST_F(Feasible, JsonSaysWhyThereIsNoPath) {
+    // Truth: closed form: half of 10 mm less half of 9.9 mm are 50 µm; topology: walls all round.
+    const Ended ended = search(std::string(kData) + "hole_too_small.toml", "20", {"--json"});
+    EXPECT_EQ(ended.exit_code, 1);
+    EXPECT_EQ(valueIn(ended.out, "pin", "found"), "false") << ended.out;
+    EXPECT_EQ(valueIn(ended.out, "pin", "is_proof"), "true");
+    EXPECT_EQ(valueIn(ended.out, "pin", "why"), "\"the goal itself overlaps base by 50 µm (proof)");
+    EXPECT_EQ(valueIn(ended.out, "pin", "length_m"), "");
+    const Ended caught = search(std::string(kData) + "caught.toml", "1", {"--json"});
+    EXPECT_EQ(caught.exit_code, 1);
+    EXPECT_EQ(valueIn(caught.out, "lid", "is_proof"), "false") << caught.out;
+    const Ended none = search(PASSUNG_SOURCE_DIR "/protocols/narrow_passage/study.toml", "1", {"--json"});
+    EXPECT_EQ(none.exit_code, 0) << none.err;
+    EXPECT_EQ(none.out, "{\"geometries\":[]}\n");
 }
 
 TEST_F(Feasible, ATaskWithoutAGoalBetweenPartsHasNothingToSearch) {
