@@ -74,6 +74,18 @@ ColumnsOf<StepRow> movement() {
              {.unit = "m",
               .formula = "sum of the proxy's steps over the ticks with the part in a hand; with two hands on "
                          "it those of the first"}},
+            {"free_path_m",
+             "Length of a collision-free path of the part's origin",
+             "number",
+             [](const StepRow& row) { return row.result().free_path; },
+             {.unit = "m", .formula = "task.step.path_mm of the protocol / 1000; NA: it has none"}},
+            {"path_ratio",
+             "Path over the free path; NA: not done at the end, or no free path",
+             "number",
+             [](const StepRow& row) { return row.result().pathRatio(); },
+             {.unit = "1",
+              .formula = "path_m / free_path_m; all that the part went in hands counts, also to where it was dropped "
+                         "or taken back; 1: as far as the free path, which need not be the shortest"}},
             {"peak_force_N",
              "Largest force on a hand that held it",
              "number",

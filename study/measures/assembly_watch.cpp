@@ -158,6 +158,20 @@ Optional sumOver(const Trial& trial, Count count) {
     return sum;
 }
 
+/// Of the steps that have one; steps of longer paths weigh more.
+Optional pathRatio(const Trial& trial) {
+    const auto* facts = std::get_if<AssemblyFacts>(&trial.context.form);
+    if (facts == nullptr || trial.ticks.empty()) return std::nullopt;
+    double way = 0.0, free = 0.0;
+    for (const StepResult& step : facts->steps) {
+        if (!step.pathRatio()) continue;
+        way += step.path;
+        free += *step.free_path;
+    }
+    if (!(free > 0.0)) return std::nullopt;
+    return way / free;
+}
+
 }  // namespace
 
 std::vector<Measure> assemblyMeasures() {
@@ -180,6 +194,10 @@ std::vector<Measure> assemblyMeasures() {
               }),
         times("undos", "Steps taken back", "how often a step that was done was taken back",
               [](const Trial& t) { return sumOver(t, [](const StepResult& s) { return s.undos; }); }),
+        {{"path_ratio", "Way of the parts over free paths", "1",
+          "sum of path_m over sum of free_path_m of the rows of assembly_steps.csv that have both and done_s; empty "
+          "without such a row; 1: as far as the free path, which need not be the shortest"},
+         pathRatio},
     };
 }
 

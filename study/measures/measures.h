@@ -48,8 +48,15 @@ struct StepResult {
     double path = 0.0;                        // of the part's origin in the hands [m]
     double peak_force = 0.0;                  // on a hand that held it [N]
     // Of the part at the end, from its goal
-    double position_error = 0.0;  // [m]
-    double angle_error = 0.0;     // [rad], turns that make no difference left out
+    double position_error = 0.0;           // [m]
+    double angle_error = 0.0;              // [rad], turns that make no difference left out
+    std::optional<double> free_path = {};  // length of a collision-free path, of the protocol [m], > 0
+
+    /// Way in the hands over the free path of a step that is done at the end; none: it is not, or no path is known.
+    std::optional<double> pathRatio() const {
+        if (!done || !free_path) return std::nullopt;
+        return path / *free_path;
+    }
     friend bool operator==(const StepResult&, const StepResult&) = default;
 };
 struct AssemblyFacts {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -61,6 +62,7 @@ struct AskedStep {
     std::string name;
     double insertion = 0.0;  // [m] that the part's origin goes along its goal's -z, guided by what is around, ≥ 0
     std::size_t hand = 0;    // that is asked to do it; any may
+    std::optional<double> free_path = {};  // [m] of a collision-free path, > 0; none: none is known
 };
 
 /// Hands pick parts up and put each where it belongs; success once all steps are done.

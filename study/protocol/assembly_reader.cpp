@@ -52,6 +52,7 @@ private:
         step.locks = read.boolean("locks");
         plan::AskedStep named{read.has("name") ? read.text("name") : read.text("part"), read.number("insertion_mm"),
                               handOf(read)};
+        if (read.has("path_mm")) named.free_path = read.number("path_mm");
         for (const plan::AskedStep& other : asked)
             if (other.name == named.name) read.fail(read.has("name") ? "name" : "part", "is used by another step");
         steps.push_back(step);

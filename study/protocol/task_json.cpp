@@ -44,12 +44,14 @@ struct FormJson {
     }
     void operator()(const plan::AssemblyTask& task) const {
         std::vector<std::string> steps;
-        for (const plan::AskedStep& step : task.steps)
-            steps.push_back(JsonObject()
-                                .text("name", step.name)
-                                .number("insertion_m", step.insertion)
-                                .integer("hand", static_cast<std::int64_t>(step.hand))
-                                .str());
+        for (const plan::AskedStep& step : task.steps) {
+            JsonObject one;
+            one.text("name", step.name)
+                .number("insertion_m", step.insertion)
+                .integer("hand", static_cast<std::int64_t>(step.hand));
+            if (step.free_path) one.number("free_path_m", *step.free_path);
+            steps.push_back(one.str());
+        }
         json.json("steps", jsonList(steps)).boolean("hints", task.hints);
     }
 };

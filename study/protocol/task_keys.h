@@ -70,6 +70,7 @@ inline constexpr std::array kTaskKeys{
     Key{"task.step", "locks", KeyType::Boolean, {}, "", "true", "True: done, the part stays there for good, or until it is taken back. False: it can be taken out again, and the step is not done any more."},
     Key{"task.step", "insertion_mm", KeyType::Number, {.low = 0}, "", "0", "Way along the goal's -z by which the part goes in at the end; 0: it is only put there. Simulated people go by it; people see where the part goes."},
     Key{"task.step", "hand", KeyType::Text, {}, "", "(the first)", "Name of the `[[hand]]` that is asked to do it; any may."},
+    Key{"task.step", "path_mm", KeyType::Number, kPositive, "", "(none)", "Length of a collision-free path of the part's origin from its start to the goal, as `passung feasible --keys` prints it: path_ratio is the way in the hands over it."},
 };
 // clang-format on
 

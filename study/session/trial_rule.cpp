@@ -1,7 +1,9 @@
 #include "study/session/trial_rule.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "study/measures/placement.h"
 #include "study/measures/tick_facts.h"
@@ -30,7 +32,8 @@ TrialRule::AnyRule TrialRule::makeRule(const plan::Task& task, const scene::Scen
         return Contour{facts, contour->coverage, {facts, X_WT}};
     }
     if (const auto* placement = std::get_if<plan::FreePlacementTask>(&task.form)) return Placement{*placement, {}};
-    if (std::holds_alternative<plan::AssemblyTask>(task.form)) return Assembly{measures::AssemblyWatch(scene)};
+    if (const auto* assembly = std::get_if<plan::AssemblyTask>(&task.form))
+        return Assembly{assembly->steps, measures::AssemblyWatch(scene)};
     const auto& pair = std::get<plan::DiscriminationPairTask>(task.form);
     return Pair{std::llround(pair.answer / kTickSeconds), comparisonInterval(attempt_seed), {}};
 }
@@ -128,7 +131,10 @@ void TrialRule::describe(measures::TrialContext& context) const {
     } else if (const auto* placement = std::get_if<Placement>(&form_)) {
         context.form = measures::PlacementFacts{placement->task.round};
     } else if (const auto* assembly = std::get_if<Assembly>(&form_)) {
-        context.form = measures::AssemblyFacts{assembly->watch.results(assembly->start.value_or(0))};
+        std::vector<measures::StepResult> steps = assembly->watch.results(assembly->start.value_or(0));
+        for (std::size_t i = 0; i < std::min(steps.size(), assembly->asked.size()); ++i)
+            steps[i].free_path = assembly->asked[i].free_path;
+        context.form = measures::AssemblyFacts{std::move(steps)};
     } else {
         context.form = measures::PairFacts{std::get<Pair>(form_).comparison_interval};
         context.leave_radius = std::numeric_limits<double>::infinity();  // nothing is carried anywhere

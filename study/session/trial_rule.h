@@ -81,6 +81,7 @@ private:
         measures::PairWatch watch;
     };
     struct Assembly {
+        std::vector<plan::AskedStep> asked;  // in the order of the scene's steps
         measures::AssemblyWatch watch;
         std::optional<std::int64_t> start = {};  // time of the first record
     };

@@ -17,7 +17,7 @@ void insertAssemblySteps(const Database& database, std::int64_t attempt_id,
                   Named{"undos", result.undos}, Named{"hands", std::int64_t{result.hands}},
                   Named{"held_ms", result.held_periods}, Named{"path_m", result.path},
                   Named{"peak_force_N", result.peak_force}, Named{"position_error_m", result.position_error},
-                  Named{"angle_error_rad", result.angle_error});
+                  Named{"angle_error_rad", result.angle_error}, Named{"free_path_m", result.free_path});
     }
 }
 
@@ -25,7 +25,8 @@ std::vector<session::StepEnd> readAssemblySteps(const Database& database, std::i
     std::vector<session::StepEnd> steps;
     Statement row = database.prepare(
         "SELECT name, part, picked_ms, done_ms, place, picks, drops, order_errors, undos, hands, held_ms, path_m, "
-        "peak_force_N, position_error_m, angle_error_rad FROM assembly_step WHERE attempt_id=? ORDER BY step");
+        "peak_force_N, position_error_m, angle_error_rad, free_path_m FROM assembly_step WHERE attempt_id=? ORDER BY "
+        "step");
     row.bind(attempt_id);
     while (row.step())
         steps.push_back({row.text(0),
@@ -42,7 +43,8 @@ std::vector<session::StepEnd> readAssemblySteps(const Database& database, std::i
                           .path = row.real(11),
                           .peak_force = row.real(12),
                           .position_error = row.real(13),
-                          .angle_error = row.real(14)}});
+                          .angle_error = row.real(14),
+                          .free_path = row.optionalReal(15)}});
     return steps;
 }
 

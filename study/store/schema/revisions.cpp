@@ -260,6 +260,7 @@ constexpr const char* kRevision22 = R"sql(
 
 constexpr const char* kRevision23 = R"sql(
 -- Chunks of "effects" have twelve columns more, of inertia and of keeping apart.
+ALTER TABLE assembly_step ADD COLUMN free_path_m REAL CHECK(free_path_m > 0);
 )sql";
 
 const std::array kRevisions = {
@@ -296,8 +297,9 @@ const std::array kRevisions = {
     Revision{21, "What each effect added to the wrench", kRevision21, 21},
     // A reader from before takes the longer chunks for damage.
     Revision{22, "What snap added to the wrench", kRevision22, 22},
-    // Likewise.
-    Revision{23, "What inertia and keeping apart added to the wrench", kRevision23, 23},
+    // A reader from before takes the longer chunks for damage.
+    Revision{23, "What inertia and keeping apart added to the wrench; free paths of an assembly's steps, and hints",
+             kRevision23, 23},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

@@ -164,5 +164,37 @@ TEST(AssemblyWatch, APartThatGoesFromHandToHandIsTakenOnce) {
     EXPECT_EQ(told.log, "0picked 0carried 0let go 0idle ");
 }
 
+TEST(AssemblyWatch, AWayInHandsIsComparedWithAFreePathOfStepsThatAreDone) {
+    // Truth: by hand. The pin goes 90 mm along x, 20 mm up, 10 mm along x and 10 mm down, 130 mm of the protocol's
+    // 104; the lid 60 mm of 240 and is not done; without a path there is no ratio.
+    Told told;
+    for (const Vec3& p : {Vec3(0.1, 0, 0), Vec3(0.01, 0, 0), Vec3(0.01, 0, 0.02), Vec3(0, 0, 0.02), Vec3(0, 0, 0.01)})
+        told.tick(kPin, p);
+    told.tick(kNoPart, {0, 0, 0}, 1);
+    told.tick(kLid, {0.2, 0, 0}, 1);
+    told.tick(kLid, {0.14, 0, 0}, 1);
+    std::vector<StepResult> steps = told.watch.results(100);
+    EXPECT_FALSE(steps[0].pathRatio());
+    TrialContext context;
+    context.end_tick = 5;
+    std::vector<TickRecord> records(6);
+    for (std::size_t i = 0; i < records.size(); ++i) records[i].tick = static_cast<std::int64_t>(i);
+    const auto ofTrial = [&] {
+        context.form = AssemblyFacts{steps};
+        std::optional<double> ratio;
+        for (const Value& value : computeMeasures(records, context))
+            if (value.name == "path_ratio") ratio = value.value;
+        return ratio;
+    };
+    EXPECT_FALSE(ofTrial());
+    steps[0].free_path = 0.104;
+    steps[1].free_path = 0.240;
+    EXPECT_NEAR(steps[0].pathRatio().value(), 1.25, 1e-6);
+    EXPECT_FALSE(steps[1].pathRatio());
+    EXPECT_NEAR(ofTrial().value(), 1.25, 1e-6);
+    steps[1].done = 7;
+    EXPECT_NEAR(ofTrial().value(), 190.0 / 344.0, 1e-6);  // longer paths weigh more
+}
+
 }  // namespace
 }  // namespace passung::measures

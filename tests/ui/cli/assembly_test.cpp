@@ -83,6 +83,49 @@ TEST_F(AssemblyStudy, IsDoneByASimulatedPersonReplaysAndTellsOfEachStep) {
     }
 }
 
+/// Way of a part's origin while it is in the hand, from where it starts, by the samples alone.
+double wayOf(const std::vector<TickRecord>& records, int part, Vec3 p) {
+    double way = 0.0;
+    for (const TickRecord& r : records) {
+        if (r.held != part) continue;
+        const Vec3 now(r.proxy_position_m[0], r.proxy_position_m[1], r.proxy_position_m[2]);
+        way += (now - p).norm();
+        p = now;
+    }
+    return way;
+}
+
+TEST_F(AssemblyStudy, ComparesTheWayOfEachPartWithAFreePath) {
+    // Truth: the ways by the samples alone, over the numbers that the study writes: 150 mm and 60 mm, the lid has none.
+    std::string text = studyOfThePage();
+    for (const auto& [part, path] : {std::pair("pin", "150"), std::pair("block", "60")}) {
+        const std::string key = std::string("part = \"") + part + "\"\n";
+        text.replace(text.find(key), key.size(), key + "path_mm = " + path + "\n");
+    }
+    run(text);
+    auto reader = store::StoreReader::open(folder_ / "study.db");
+    ASSERT_TRUE(reader);
+    const auto attempts = reader->attempts();
+    ASSERT_TRUE(attempts);
+    const fake::CsvFile steps = table("assembly_steps.csv"), trials = table("trials.csv");
+    ASSERT_EQ(attempts->size(), 2u);
+    ASSERT_EQ(steps.rows.size(), 6u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto records = reader->records((*attempts)[i].attempt_id);
+        ASSERT_TRUE(records);
+        const double pin = wayOf(*records, 1, Vec3(0.060, 0.040, 0)),
+                     block = wayOf(*records, 2, Vec3(-0.06, 0.03, 0.01));
+        EXPECT_NEAR(std::stod(steps.at(3 * i, "path_ratio")), pin / 0.150, 1e-6);
+        EXPECT_NEAR(std::stod(steps.at(3 * i + 1, "path_ratio")), block / 0.060, 1e-6);
+        EXPECT_EQ(steps.at(3 * i + 1, "free_path_m"), "0.06");
+        EXPECT_EQ(steps.at(3 * i + 2, "path_ratio"), "NA");
+        EXPECT_EQ(steps.at(3 * i + 2, "free_path_m"), "NA");
+        EXPECT_NEAR(std::stod(trials.at(i, "path_ratio")), (pin + block) / 0.210, 1e-6);
+        const Ended replayed = program({"replay", "study.db", "--attempt", std::to_string((*attempts)[i].attempt_id)});
+        EXPECT_EQ(replayed.exit_code, 0) << replayed.out;
+    }
+}
+
 TEST_F(AssemblyStudy, ThatCannotBeDoneIsNotDone) {
     // Truth: closed form: a pin of 10 mm does not go into a bore of 9.9 mm.
     std::string text = studyOfThePage();
