@@ -54,6 +54,12 @@ ColumnsOf<StepRow> counts() {
              [](const StepRow& row) { return row.result().order_errors; }},
             {"undos", "How often the step was taken back", "integer",
              [](const StepRow& row) { return row.result().undos; }},
+            {"hints",
+             "How often a hint came up that leads to it",
+             "integer",
+             [](const StepRow& row) { return row.result().hints; },
+             {.formula = "task.hint_after_s after the trial's start or after a step was done or taken back, where no "
+                         "step was in between: rows of events.csv with hint_shown"}},
             {"hands",
              "Hands that held the part",
              "integer",

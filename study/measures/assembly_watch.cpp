@@ -194,6 +194,8 @@ std::vector<Measure> assemblyMeasures() {
               }),
         times("undos", "Steps taken back", "how often a step that was done was taken back",
               [](const Trial& t) { return sumOver(t, [](const StepResult& s) { return s.undos; }); }),
+        times("hints", "Hints", "how often a hint came up: rows of events.csv with hint_shown",
+              [](const Trial& t) { return sumOver(t, [](const StepResult& s) { return s.hints; }); }),
         {{"path_ratio", "Way of the parts over free paths", "1",
           "sum of path_m over sum of free_path_m of the rows of assembly_steps.csv that have both and done_s; empty "
           "without such a row; 1: as far as the free path, which need not be the shortest"},

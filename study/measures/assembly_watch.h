@@ -34,9 +34,9 @@ StepState stateInHand(const scene::AssemblyStep& step, std::span<const Pose> X_W
 /// Something that happened to a step.
 struct StepChange {
     std::size_t step = 0;
-    enum class What { State, LetGo, OrderError, Undone } what = What::State;
+    enum class What { State, LetGo, OrderError, Undone, Hint } what = What::State;
     StepState state = StepState::Idle;  // that it is in now
-    std::size_t hand = 0;               // that did it
+    std::size_t hand = 0;               // that did it; 0 where none did
 };
 
 /// An assembly, tick by tick, from the records of all hands alone. Within one hold a step goes on from state to state
@@ -50,6 +50,8 @@ public:
     /// the tick [haptic periods, from any origin]. Appends what happened.
     void follow(std::span<const TickRecord* const> hands, std::int64_t time, std::vector<StepChange>& changes);
 
+    /// The steps that are done.
+    scene::StepSet done() const { return done_; }
     bool allDone() const { return done_ == ~std::uint64_t{0} >> (64 - steps_.size()); }
     /// Of each step, times from `start` [periods, as told to follow()].
     std::vector<StepResult> results(std::int64_t start) const;

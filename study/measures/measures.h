@@ -43,6 +43,7 @@ struct StepResult {
     std::int64_t drops = 0;                   // it was let go elsewhere than at its goal
     std::int64_t order_errors = 0;            // it was let go at its goal before steps that come before
     std::int64_t undos = 0;                   // it was done, and was not any more
+    std::int64_t hints = 0;                   // a hint came up that leads to it
     std::uint32_t hands = 0;                  // that held the part: bit 0 the first hand
     std::int64_t held_periods = 0;            // that it was in a hand
     double path = 0.0;                        // of the part's origin in the hands [m]

@@ -69,6 +69,7 @@ struct AskedStep {
 struct AssemblyTask {
     std::vector<AskedStep> steps;  // in the order of the scene's
     bool hints = true;             // the goals of the steps that may be done next are drawn
+    double hint_after = 0.0;       // [s] without a step done until a hint comes up; 0: never
 };
 
 /// What a trial asks for; `form` says the type of the trial.

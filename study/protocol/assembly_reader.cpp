@@ -118,6 +118,7 @@ plan::AssemblyTask readAssembly(const TableReader& read, const StudyTables& tabl
                                 scene::SceneSpec& scene, Errors& errors) {
     plan::AssemblyTask assembly;
     assembly.hints = read.boolean("hints");
+    if (read.has("hint_after_s")) assembly.hint_after = read.number("hint_after_s");
     if (!scene.effects.picks()) {
         errors.push_back(errorAt(tables.task.find("type")->place, "task.type", "\"assembly\"",
                                  "needs effects.pick: hands pick the parts up"));

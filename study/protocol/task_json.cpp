@@ -53,6 +53,7 @@ struct FormJson {
             steps.push_back(one.str());
         }
         json.json("steps", jsonList(steps)).boolean("hints", task.hints);
+        if (task.hint_after > 0.0) json.number("hint_after_s", task.hint_after);
     }
 };
 

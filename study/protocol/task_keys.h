@@ -54,6 +54,7 @@ inline constexpr std::array kTaskKeys{
 
     Key{"task.assembly", "step", KeyType::Tables, {}, "", "!", "Steps of the assembly, at most 63: success once all are done."},
     Key{"task.assembly", "hints", KeyType::Boolean, {}, "", "true", "True where the goals of the steps that may be done next are drawn."},
+    Key{"task.assembly", "hint_after_s", KeyType::Number, kTimeout, "", "(none)", "Time in which no step is done or taken back, also from the start of the trial, after which a hint comes up: of the first step that may be done next the part is marked, with its line in the list and its goal. It stays until a step is done or taken back. Simulated people do not look at it."},
     Key{"task.assembly", "undo_button", KeyType::Integer, {1, scene::kButtons}, "", "(none)", "Number of the device's button, from 1, that takes back the step that was done last: its part can be picked up again. No effect may have it."},
     Key{"task.assembly", "timeout_s", KeyType::Number, kTimeout, "", "300", "Time from the start of the trial after which the trial ends without success."},
     Key{"task.assembly", "leave_radius_mm", KeyType::Number, {.low = 0}, "", "0", "Radius of a sphere about each hand's start; the completion time starts when a hand leaves its sphere. Some part of a step must start or belong outside."},

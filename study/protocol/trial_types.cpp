@@ -15,8 +15,8 @@ constexpr std::array<std::string_view, 2> kFreePlacement{"position_error_m", "an
 constexpr std::array<std::string_view, 4> kDiscriminationPair{"comparison_interval", "answer", "correct",
                                                               "response_time_s"};
 
-constexpr std::array<std::string_view, 6> kAssembly{"steps_done", "order_errors", "drops",
-                                                    "regrasps",   "undos",        "path_ratio"};
+constexpr std::array<std::string_view, 7> kAssembly{"steps_done", "order_errors", "drops",     "regrasps",
+                                                    "undos",      "hints",        "path_ratio"};
 
 constexpr std::array kTypes{
     TrialType{"peg_in_hole", "task.peg_in_hole", kPegInHole},

@@ -32,10 +32,16 @@ TrialRule::AnyRule TrialRule::makeRule(const plan::Task& task, const scene::Scen
         return Contour{facts, contour->coverage, {facts, X_WT}};
     }
     if (const auto* placement = std::get_if<plan::FreePlacementTask>(&task.form)) return Placement{*placement, {}};
-    if (const auto* assembly = std::get_if<plan::AssemblyTask>(&task.form))
-        return Assembly{assembly->steps, measures::AssemblyWatch(scene)};
+    if (const auto* assembly = std::get_if<plan::AssemblyTask>(&task.form)) return makeAssembly(*assembly, scene);
     const auto& pair = std::get<plan::DiscriminationPairTask>(task.form);
     return Pair{std::llround(pair.answer / kTickSeconds), comparisonInterval(attempt_seed), {}};
+}
+
+TrialRule::Assembly TrialRule::makeAssembly(const plan::AssemblyTask& task, const scene::SceneSpec& scene) {
+    const std::vector<scene::AssemblyStep>& steps = scene.effects.pick.steps;
+    return {task.steps, measures::AssemblyWatch(scene),
+            measures::HintWatch(steps, std::llround(task.hint_after / kTickSeconds)),
+            std::vector<std::int64_t>(steps.size(), 0)};
 }
 
 std::optional<TrialState> TrialRule::follow(const TickRecord& record, std::span<const TickRecord* const> hands,
@@ -117,6 +123,11 @@ TrialRule::Verdict TrialRule::judge(Assembly& form, std::span<const TickRecord* 
                                                              : "step_undone";
         events.push_back({time, name, change});
     }
+    if (form.hints.follow(time, form.watch.done())) {
+        const std::size_t step = *form.hints.shown();
+        ++form.hinted[step];
+        events.push_back({time, "hint_shown", measures::StepChange{.step = step, .what = What::Hint}});
+    }
     return form.watch.allDone() ? Verdict(TrialState::Succeeded) : std::nullopt;
 }
 
@@ -134,6 +145,7 @@ void TrialRule::describe(measures::TrialContext& context) const {
         std::vector<measures::StepResult> steps = assembly->watch.results(assembly->start.value_or(0));
         for (std::size_t i = 0; i < std::min(steps.size(), assembly->asked.size()); ++i)
             steps[i].free_path = assembly->asked[i].free_path;
+        for (std::size_t i = 0; i < steps.size(); ++i) steps[i].hints = assembly->hinted[i];
         context.form = measures::AssemblyFacts{std::move(steps)};
     } else {
         context.form = measures::PairFacts{std::get<Pair>(form_).comparison_interval};

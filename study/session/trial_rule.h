@@ -9,6 +9,7 @@
 
 #include "study/measures/assembly_watch.h"
 #include "study/measures/contour_watch.h"
+#include "study/measures/hint_watch.h"
 #include "study/measures/measures.h"
 #include "study/measures/pair_watch.h"
 #include "study/measures/passage_watch.h"
@@ -21,7 +22,7 @@ enum class TrialState { AwaitingStart, Running, Succeeded, Failed, TimedOut, Abo
 
 /// Something that happened in a trial: trial_started, first_contact, success, failure, timeout, aborted; and by its
 /// type engaged (the tip is in the bore), passage_entered, interval_started, interval_ended (of a pair; its first
-/// interval begins with trial_started); of an assembly step_state, part_let_go, order_error, step_undone.
+/// interval begins with trial_started); of an assembly step_state, part_let_go, order_error, step_undone, hint_shown.
 struct TrialEvent {
     std::int64_t time = 0;  // haptic periods since the attempt's tick 0: ticks and missed cycles
     const char* name = "";
@@ -83,8 +84,11 @@ private:
     struct Assembly {
         std::vector<plan::AskedStep> asked;  // in the order of the scene's steps
         measures::AssemblyWatch watch;
+        measures::HintWatch hints;
+        std::vector<std::int64_t> hinted;        // how often to each step
         std::optional<std::int64_t> start = {};  // time of the first record
     };
+    static Assembly makeAssembly(const plan::AssemblyTask& task, const scene::SceneSpec& scene);
     using AnyRule = std::variant<Insertion, Passage, Contour, Placement, Pair, Assembly>;
     using Verdict = std::optional<TrialState>;
 

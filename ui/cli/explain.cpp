@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <numbers>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/base/digest.h"
@@ -244,6 +246,18 @@ void explainAccuracy(const std::string& database, std::span<const store::Accurac
                run::describeAccuracy(rows));
 }
 
+/// When hints of an assembly come up: a line for each time that differs.
+void printHints(const std::vector<const plan::Condition*>& conditions) {
+    std::set<double> times;
+    for (const plan::Condition* condition : conditions)
+        if (const auto* assembly = std::get_if<plan::AssemblyTask>(&condition->task.form))
+            times.insert(assembly->hint_after);
+    for (const double after : times)
+        if (after > 0.0)
+            fmt::print("  {:<22}{}after {:.4g} s without a step done: part, line and goal of the next are marked\n",
+                       "hint", times.size() > 1 ? "of some " : "", after);
+}
+
 Result<Done> explainEffects(const plan::StudyPlan& plan, scene::PartCache& cache, ProgressLine& progress) {
     fmt::print("\nEffects, their cost measured on this machine in sliding contact\n");
     for (const auto& conditions : run::costGroups(plan)) {
@@ -251,6 +265,7 @@ Result<Done> explainEffects(const plan::StudyPlan& plan, scene::PartCache& cache
         for (const auto* condition : conditions)
             fmt::print(" {}{}", condition->name, condition == conditions.back() ? "" : ",");
         fmt::print("\n");
+        printHints(conditions);
         if (auto done = printStages(conditions.front()->scene, cache, progress); !done) return done;
     }
     return Done{};

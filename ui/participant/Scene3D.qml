@@ -100,8 +100,8 @@ View3D {
         }
     }
 
-    // In the order of what a part may be: fixed, loose, held, in another hand, done, pale image.
-    readonly property var looks: [palette3d.rest, palette3d.loose, heldColor, palette3d.otherHeld, palette3d.done, palette3d.mark]
+    // In the order of what a part may be: fixed, loose, held, in another hand, done, pale image, to be taken next.
+    readonly property var looks: [palette3d.rest, palette3d.loose, heldColor, palette3d.otherHeld, palette3d.done, palette3d.mark, palette3d.mark]
     readonly property var identities: Array.from({ length: view.scene.partCount }, (_, i) => identity(i))
     Repeater3D { // parts that are picked up, those of one surface together
         model: view.scene.surfaces

@@ -1,10 +1,10 @@
 import QtQuick
 
-// The steps of an assembly: a tick for what is done, an arrow for what may be next. Of many those about the first that
-// is not done.
+// The steps of an assembly: a tick for what is done, an arrow for what may be next, a bar beside what a hint leads to. Of
+// many those about the first that is not done.
 Rectangle {
     id: list
-    required property var steps // "name", "done", "next"
+    required property var steps // "name", "done", "next", "hinted"
     property string heading
     property int most: 12
     readonly property int open: steps.findIndex(step => !step.done)
@@ -35,6 +35,14 @@ Rectangle {
                 id: line
                 required property var modelData
                 spacing: 8
+                Rectangle {
+                    objectName: "hint"
+                    visible: line.modelData.hinted === true
+                    width: look.scale * 4
+                    height: parent.height
+                    radius: 2
+                    color: look.accent
+                }
                 Text {
                     textFormat: Text.PlainText
                     width: look.scale * 16
@@ -49,7 +57,7 @@ Rectangle {
                     width: Math.min(implicitWidth, look.scale * 205)
                     elide: Text.ElideRight
                     text: line.modelData.name
-                    color: line.modelData.next ? look.text : look.dim
+                    color: line.modelData.hinted === true ? look.accent : line.modelData.next ? look.text : look.dim
                     font.family: look.family
                     font.pixelSize: look.scale * 15
                     font.weight: line.modelData.next ? Font.DemiBold : Font.Normal

@@ -66,6 +66,7 @@ std::optional<DrawnPicking> pickingOf(const plan::Condition& condition) {
     if (const auto* assembly = std::get_if<plan::AssemblyTask>(&condition.task.form)) {
         for (const plan::AskedStep& step : assembly->steps) picking.step_names.push_back(step.name);
         picking.hints = assembly->hints;
+        picking.hint_after = assembly->hint_after;
     }
     return picking;
 }

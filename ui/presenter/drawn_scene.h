@@ -44,6 +44,7 @@ struct DrawnPicking {
     scene::Pick pick;                          // with the steps of an assembly
     std::vector<std::string> step_names = {};  // of these; may be shorter
     bool hints = false;                        // goals of the steps that may be done next are drawn
+    double hint_after = 0.0;                   // [s] without a step done until a hint comes up; 0: never
 };
 
 /// What a participant sees of a condition's scene.

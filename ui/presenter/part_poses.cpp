@@ -1,6 +1,7 @@
 #include "ui/presenter/part_poses.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "study/measures/tick_facts.h"
 
@@ -33,12 +34,16 @@ PartPoses::PartPoses(const DrawnScene& scene) : shown_(scene.shown) {
             held_start_[hand] = static_cast<std::int32_t>(i);
     }
     button_ = scene.picking->pick.button;
+    no_hint_yet_ =
+        measures::HintWatch(scene.picking->pick.steps, std::llround(scene.picking->hint_after / kTickSeconds));
     begin(-1);
 }
 
 void PartPoses::begin(std::int64_t tick) {
     tick_ = tick;
     done_ = 0;
+    hints_ = no_hint_yet_;
+    started_ = false;
     X_WP_ = X_WStart_;
     taken_at_.clear();
     for (std::size_t part = 0; part < X_WP_.size(); ++part) {
@@ -87,6 +92,13 @@ void PartPoses::take(std::span<const std::optional<HandTick>> hands) {
     }
 }
 
+/// As the session judges hints (session::TrialRule), but for cycles that were missed.
+void PartPoses::lookAtSteps(const TickRecord& first, bool engaged) {
+    done_ = first.steps_done;
+    started_ = started_ || engaged;
+    if (started_) hints_.follow(first.tick, done_);
+}
+
 void PartPoses::follow(const loop::ScreenTick& tick) {
     if (X_WStart_.empty()) return;
     const TickRecord& first = tick.record;
@@ -100,7 +112,7 @@ void PartPoses::follow(const loop::ScreenTick& tick) {
         hands[i + 1] = {proxy ? other.X_WG : other.X_WH, other.X_WG, other.part, other.part >= 0};
     }
     take(hands);
-    done_ = first.steps_done;
+    lookAtSteps(first, tick.engaged);
     // It is as the tick ended, later than what the hands held as it began.
     const std::int32_t resting = tick.at_rest.part;
     if (resting >= 0 && static_cast<std::size_t>(resting) < X_WP_.size())
@@ -116,7 +128,9 @@ void PartPoses::follow(std::span<const TickRecord* const> records) {
     for (std::size_t i = 0; i < std::min(records.size(), hands.size()); ++i)
         if (records[i] != nullptr) hands[i] = tickOf(*records[i]);
     take(hands);
-    done_ = records.front()->steps_done;
+    lookAtSteps(*records.front(), std::all_of(records.begin(), records.end(), [](const TickRecord* record) {
+        return record != nullptr && (record->status & kEngaged) != 0;
+    }));
 }
 
 }  // namespace passung::presenter

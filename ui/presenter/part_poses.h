@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/loop/record_ring.h"
+#include "study/measures/hint_watch.h"
 #include "ui/presenter/drawn_scene.h"
 
 namespace passung::presenter {
@@ -44,6 +45,8 @@ public:
     const std::vector<Vec3>& takenAt() const { return taken_at_; }
     /// The steps of an assembly that are done.
     scene::StepSet done() const { return done_; }
+    /// The step that a hint leads to, from when it is due in the running trial on.
+    std::optional<std::size_t> hinted() const { return hints_.shown(); }
 
 private:
     struct HandTick {
@@ -54,6 +57,7 @@ private:
     void begin(std::int64_t tick);
     void take(std::span<const std::optional<HandTick>> hands);
     void put(std::size_t part, const Pose& X_WP);
+    void lookAtSteps(const TickRecord& first, bool engaged);
     HandTick tickOf(const TickRecord& record) const;
 
     std::vector<Pose> X_WStart_, X_WP_, X_WDrawn_;
@@ -66,6 +70,8 @@ private:
     int button_ = 1;
     std::int64_t tick_ = -1;
     scene::StepSet done_ = 0;
+    measures::HintWatch hints_, no_hint_yet_;
+    bool started_ = false;  // all hands have held the start: the trial runs
 };
 
 }  // namespace passung::presenter

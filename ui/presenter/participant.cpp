@@ -77,8 +77,9 @@ void drawParts(ParticipantView& view, const DrawnScene& scene, const PartPoses& 
     view.X_WParts = poses.drawn();
     view.hands = poses.hands();
     view.done = partsDone(scene, poses.done());
-    view.images = stepImages(scene, poses.poses(), poses.done());
-    view.steps = stepLines(*scene.picking, poses.done());
+    if (const auto step = poses.hinted()) view.hinted = scene.picking->pick.steps[*step].part;
+    view.images = stepImages(scene, poses.poses(), poses.done(), poses.hinted());
+    view.steps = stepLines(*scene.picking, poses.done(), poses.hinted());
     if (view.hands.empty()) return;
     const std::int32_t carried = view.hands.front().part;
     view.X_WHeld = carried >= 0 ? view.X_WParts[static_cast<std::size_t>(carried)] : view.hands.front().X_W;

@@ -37,8 +37,9 @@ struct ParticipantView {
     // Of a scene whose parts are picked up: where all parts are drawn, and the hands; else none.
     std::vector<Pose> X_WParts;
     std::vector<DrawnHand> hands;
-    std::vector<bool> done;         // parts of steps that are done and lock
-    std::vector<StepImage> images;  // pale, where parts belong next
+    std::vector<bool> done;                  // parts of steps that are done and lock
+    std::optional<std::size_t> hinted = {};  // the part that a hint says to take
+    std::vector<StepImage> images;           // pale, where parts belong next
     std::vector<StepLine> steps;
     bool start_mark = false;
     Pose X_WStart;

@@ -4,13 +4,11 @@
 
 #include <algorithm>
 
+#include "study/measures/hint_watch.h"
+
 namespace passung::presenter {
 
-bool mayBeNext(const scene::AssemblyStep& step, std::size_t index, scene::StepSet done) {
-    return (done & scene::stepBit(index)) == 0 && (step.after & ~done) == 0;
-}
-
-std::vector<StepLine> stepLines(const DrawnPicking& picking, scene::StepSet done) {
+std::vector<StepLine> stepLines(const DrawnPicking& picking, scene::StepSet done, std::optional<std::size_t> hinted) {
     std::vector<StepLine> lines;
     for (std::size_t i = 0; i < picking.pick.steps.size(); ++i) {
         StepLine line;
@@ -18,8 +16,9 @@ std::vector<StepLine> stepLines(const DrawnPicking& picking, scene::StepSet done
                                                                                     : fmt::format("{}", i + 1);
         if ((done & scene::stepBit(i)) != 0)
             line.state = StepLine::State::Done;
-        else if (mayBeNext(picking.pick.steps[i], i, done))
+        else if (measures::mayBeNext(picking.pick.steps[i], i, done))
             line.state = StepLine::State::Next;
+        line.hinted = hinted == i;
         lines.push_back(std::move(line));
     }
     return lines;
@@ -40,12 +39,14 @@ std::vector<measures::StepState> stepStates(const DrawnPicking& picking, const P
     return states;
 }
 
-std::vector<StepImage> stepImages(const DrawnScene& scene, std::span<const Pose> X_WP, scene::StepSet done) {
+std::vector<StepImage> stepImages(const DrawnScene& scene, std::span<const Pose> X_WP, scene::StepSet done,
+                                  std::optional<std::size_t> hinted) {
     std::vector<StepImage> images;
-    if (!scene.picking || !scene.picking->hints) return images;
+    if (!scene.picking) return images;
     const std::vector<scene::AssemblyStep>& steps = scene.picking->pick.steps;
     for (std::size_t i = 0; i < steps.size(); ++i) {
-        if (!mayBeNext(steps[i], i, done) || steps[i].part >= X_WP.size()) continue;
+        const bool asked = scene.picking->hints || hinted == i;
+        if (!asked || !measures::mayBeNext(steps[i], i, done) || steps[i].part >= X_WP.size()) continue;
         const Pose X_WGoal = scene::goalOf(steps[i], X_WP);
         images.push_back({steps[i].part, {X_WGoal.q, X_WGoal.p + scene.parts[steps[i].part].shown_offset}});
     }

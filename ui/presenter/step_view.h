@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@ namespace passung::presenter {
 struct StepLine {
     std::string name;
     enum class State { Done, Next, Later } state = State::Later;
+    bool hinted = false;  // a hint leads to it
     friend bool operator==(const StepLine&, const StepLine&) = default;
 };
 
@@ -26,14 +28,14 @@ struct StepImage {
 /// How far each step is, in the order of the scene: its part where it is shown.
 std::vector<measures::StepState> stepStates(const DrawnPicking& picking, const PartPoses& poses);
 
-/// In the order of the scene. `done`: the steps that are.
-std::vector<StepLine> stepLines(const DrawnPicking& picking, scene::StepSet done);
+/// In the order of the scene. `done`: the steps that are; `hinted`: the one that a hint leads to.
+std::vector<StepLine> stepLines(const DrawnPicking& picking, scene::StepSet done,
+                                std::optional<std::size_t> hinted = {});
 
-/// The step is not done, and all that it is after are.
-bool mayBeNext(const scene::AssemblyStep& step, std::size_t index, scene::StepSet done);
-
-/// The goals of the steps that may be done next, where the parts now are; none if the study gives no hints.
-std::vector<StepImage> stepImages(const DrawnScene& scene, std::span<const Pose> X_WP, scene::StepSet done);
+/// The goals of the steps that may be done next, where the parts now are; if the study does not draw these, that of
+/// `hinted` alone.
+std::vector<StepImage> stepImages(const DrawnScene& scene, std::span<const Pose> X_WP, scene::StepSet done,
+                                  std::optional<std::size_t> hinted = {});
 
 /// Of each part: a step that is done keeps it.
 std::vector<bool> partsDone(const DrawnScene& scene, scene::StepSet done);

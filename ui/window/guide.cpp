@@ -109,7 +109,8 @@ QVariantList Guide::steps() const {
     for (const presenter::StepLine& step : view_.steps)
         all.append(QVariantMap{{"name", QString::fromStdString(step.name)},
                                {"done", step.state == State::Done},
-                               {"next", step.state == State::Next}});
+                               {"next", step.state == State::Next},
+                               {"hinted", step.hinted}});
     return all;
 }
 

@@ -68,6 +68,8 @@ namespace {
     QT_TRANSLATE_NOOP("measures", "Parts let go elsewhere"),
     QT_TRANSLATE_NOOP("measures", "Parts taken again"),
     QT_TRANSLATE_NOOP("measures", "Steps taken back"),
+    QT_TRANSLATE_NOOP("measures", "Hints"),
+    QT_TRANSLATE_NOOP("measures", "Way of the parts over free paths"),
 };
 
 /// Labels of all devices, likewise.

@@ -42,7 +42,7 @@ QVariantMap modelOf(const participant::Surface& mesh, const Pose& X_W, std::opti
 }
 
 /// Colours of parts that are picked up, in the order of Scene3D's.
-enum class PartLook { Fixed, Loose, Held, OtherHeld, Done, Image };
+enum class PartLook { Fixed, Loose, Held, OtherHeld, Done, Image, Hinted };
 
 }  // namespace
 
@@ -128,6 +128,7 @@ void SceneModel::place() {
     for (std::size_t part = 0; part < looks.size(); ++part) {
         if (pickable_[part]) looks[part] = PartLook::Loose;
         if (part < view_.done.size() && view_.done[part]) looks[part] = PartLook::Done;
+        if (view_.hinted == part) looks[part] = PartLook::Hinted;
     }
     for (std::size_t hand = view_.hands.size(); hand-- > 0;)
         if (const std::int32_t part = view_.hands[hand].part; part >= 0)

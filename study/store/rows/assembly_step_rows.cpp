@@ -17,7 +17,8 @@ void insertAssemblySteps(const Database& database, std::int64_t attempt_id,
                   Named{"undos", result.undos}, Named{"hands", std::int64_t{result.hands}},
                   Named{"held_ms", result.held_periods}, Named{"path_m", result.path},
                   Named{"peak_force_N", result.peak_force}, Named{"position_error_m", result.position_error},
-                  Named{"angle_error_rad", result.angle_error}, Named{"free_path_m", result.free_path});
+                  Named{"angle_error_rad", result.angle_error}, Named{"free_path_m", result.free_path},
+                  Named{"hints", result.hints});
     }
 }
 
@@ -25,7 +26,8 @@ std::vector<session::StepEnd> readAssemblySteps(const Database& database, std::i
     std::vector<session::StepEnd> steps;
     Statement row = database.prepare(
         "SELECT name, part, picked_ms, done_ms, place, picks, drops, order_errors, undos, hands, held_ms, path_m, "
-        "peak_force_N, position_error_m, angle_error_rad, free_path_m FROM assembly_step WHERE attempt_id=? ORDER BY "
+        "peak_force_N, position_error_m, angle_error_rad, free_path_m, hints FROM assembly_step WHERE attempt_id=? "
+        "ORDER BY "
         "step");
     row.bind(attempt_id);
     while (row.step())
@@ -38,6 +40,7 @@ std::vector<session::StepEnd> readAssemblySteps(const Database& database, std::i
                           .drops = row.integer(6),
                           .order_errors = row.integer(7),
                           .undos = row.integer(8),
+                          .hints = row.integer(16),
                           .hands = static_cast<std::uint32_t>(row.integer(9)),
                           .held_periods = row.integer(10),
                           .path = row.real(11),

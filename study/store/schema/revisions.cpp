@@ -261,6 +261,7 @@ constexpr const char* kRevision22 = R"sql(
 constexpr const char* kRevision23 = R"sql(
 -- Chunks of "effects" have twelve columns more, of inertia and of keeping apart.
 ALTER TABLE assembly_step ADD COLUMN free_path_m REAL CHECK(free_path_m > 0);
+ALTER TABLE assembly_step ADD COLUMN hints INTEGER NOT NULL DEFAULT 0 CHECK(hints >= 0);
 )sql";
 
 const std::array kRevisions = {

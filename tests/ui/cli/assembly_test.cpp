@@ -126,6 +126,49 @@ TEST_F(AssemblyStudy, ComparesTheWayOfEachPartWithAFreePath) {
     }
 }
 
+TEST_F(AssemblyStudy, TellsOfEachHintWhenItCameUpAndCountsThem) {
+    // Truth: by hand from events.csv alone: a hint comes up 0.4 s after the trial began or a step was done, unless the
+    // next one is done before; first to the pin, then to the block, which the lid waits for, then to the lid.
+    std::string text = studyOfThePage();
+    const std::string task = "type = \"assembly\"\n";
+    text.replace(text.find(task), task.size(), task + "hint_after_s = 0.4\nhints = false\n");
+    run(text);
+    const fake::CsvFile events = table("events.csv"), steps = table("assembly_steps.csv"), trials = table("trials.csv");
+    ASSERT_EQ(trials.rows.size(), 2u);
+    std::map<std::string, std::vector<std::string>> told;  // by trial: names of steps that hints led to
+    double since = 0.0;
+    bool shown = false;
+    for (std::size_t i = 0; i < events.rows.size(); ++i) {
+        const std::string event = events.at(i, "event"), payload = events.at(i, "payload_json");
+        const double now = std::stod(events.at(i, "t_s"));
+        if (event == "trial_started" || payload.find("locked") != std::string::npos) {
+            if (event != "trial_started") EXPECT_EQ(shown, now - since >= 0.4 - 1e-9) << now;
+            since = now;
+            shown = false;
+        }
+        if (event != "hint_shown") continue;
+        EXPECT_NEAR(now - since, 0.4, 1e-9);
+        EXPECT_FALSE(shown);
+        shown = true;
+        told[events.at(i, "trial_index")].push_back(payload);
+    }
+    ASSERT_EQ(told.size(), 2u);
+    std::size_t trial = 0;
+    for (const auto& [index, payloads] : told) {
+        std::map<std::string, int> count;
+        for (const std::string& payload : payloads) ++count[payload];
+        for (std::size_t step = 0; step < 3; ++step)
+            EXPECT_EQ(std::stoi(steps.at(3 * trial + step, "hints")),
+                      count["{\"step\":\"" + steps.at(3 * trial + step, "step_name") + "\"}"]);
+        EXPECT_EQ(std::stod(trials.at(trial, "hints")), static_cast<double>(payloads.size()));
+        EXPECT_NE(payloads[0].find("pin"), std::string::npos);
+        ++trial;
+    }
+    EXPECT_EQ(program({"replay", "study.db", "--attempt", "1"}).exit_code, 0);
+    const Ended explained = program({"explain", "study.toml"});
+    EXPECT_NE(explained.out.find("after 0.4 s without a step done"), std::string::npos) << explained.out;
+}
+
 TEST_F(AssemblyStudy, ThatCannotBeDoneIsNotDone) {
     // Truth: closed form: a pin of 10 mm does not go into a bore of 9.9 mm.
     std::string text = studyOfThePage();

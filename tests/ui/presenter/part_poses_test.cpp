@@ -251,6 +251,47 @@ TEST(StepView, ShowsWhereWhatMayBeNextBelongs) {
     EXPECT_TRUE(stepImages(*drawn(silent), X_WP, 0).empty());
 }
 
+TEST(StepView, AHintMarksThePartItsLineAndItsGoal) {
+    // Truth: by hand: a trial runs from its first engaged tick, 20 ms in; the hint is due 50 ms later, and 50 ms after
+    // the first step is done.
+    auto condition = threeSteps();
+    auto& assembly = std::get<plan::AssemblyTask>(condition.task.form);
+    assembly.hints = false;
+    assembly.hint_after = 0.050;
+    const auto scene = drawn(condition);
+    PartPoses poses(*scene);
+    TickRecord record;
+    const auto at = [&](std::int64_t tick, scene::StepSet done) {
+        loop::ScreenTick one;
+        one.record.tick = tick;
+        one.record.held = kNoPart;
+        one.record.steps_done = done;
+        one.record.hand_quaternion = one.record.proxy_quaternion = {1, 0, 0, 0};
+        one.engaged = tick >= 20;
+        poses.follow(one);
+        record = one.record;
+        return playbackView(*scene, record, {}, &poses);
+    };
+    for (const std::int64_t tick : {0, 20, 69}) {
+        const ParticipantView view = at(tick, 0);
+        EXPECT_FALSE(view.hinted) << tick;
+        EXPECT_TRUE(view.images.empty());
+        EXPECT_FALSE(view.steps[0].hinted);
+    }
+    const ParticipantView hinted = at(70, 0);
+    EXPECT_EQ(hinted.hinted, 1u);
+    ASSERT_EQ(hinted.images.size(), 1u);
+    EXPECT_EQ(hinted.images[0].part, 1u);
+    EXPECT_TRUE(hinted.steps[0].hinted);
+    EXPECT_FALSE(hinted.steps[1].hinted);
+    EXPECT_FALSE(at(80, 1).hinted);
+    EXPECT_FALSE(at(129, 1).hinted);
+    EXPECT_EQ(at(130, 1).hinted, 2u);
+    EXPECT_FALSE(at(0, 0).hinted) << "the next trial begins";
+    EXPECT_FALSE(at(19, 0).hinted);
+    EXPECT_FALSE(at(75, 0).hinted) << "its first engaged tick that is known";
+}
+
 TEST(StepView, TellsHowFarEachStepIs) {
     // Truth: by hand, from what the states are said to be. Goal 0.2 m along y, within 1 mm; taken 50 mm along x.
     auto condition = threeSteps();

@@ -1541,6 +1541,14 @@
         <source>Steps taken back</source>
         <translation>Zurückgenommene Schritte</translation>
     </message>
+    <message>
+        <source>Hints</source>
+        <translation>Hinweise</translation>
+    </message>
+    <message>
+        <source>Way of the parts over free paths</source>
+        <translation>Weg der Teile im Verhältnis zu freien Pfaden</translation>
+    </message>
 </context>
 <context>
     <name>participant</name>
