@@ -41,7 +41,8 @@ std::vector<PathProblem> pegProblems(const plan::Condition& condition, const pla
     if (target == nullptr || held == scene.parts.size()) return {};
     std::vector<Pose> X_WP;
     for (const scene::PartSpec& part : scene.parts) X_WP.push_back(part.X_WP);
-    const Pose X_goal = target->X_WP * Pose{Quat::Identity(), Vec3(0.0, 0.0, -task.insertion_depth)};
+    const Pose X_goal =
+        plan::judgedFrame(condition.task, target->X_WP) * Pose{Quat::Identity(), Vec3(0.0, 0.0, -task.insertion_depth)};
     return {{scene.parts[held].name, held, scene.parts[held].X_WP, X_goal, othersThan(held, X_WP)}};
 }
 

@@ -13,7 +13,8 @@ namespace passung::plan {
 
 /// A peg goes into the bore of the target, whose frame has its origin at the bore's mouth and the bore along -z.
 struct PegInHoleTask {
-    double clearance = 0.0;           // [m] radial, of the peg in that bore: what their diameters leave
+    double clearance = 0.0;           // [m] radial, of the peg in that bore
+    Pose X_TMouth = {};               // centre of the bore's mouth in the target's frame, +z out of it
     double insertion_depth = 0.020;   // [m] of the tip below the mouth that counts as fully inserted
     double success_fraction = 0.95;   // of that depth
     double max_speed = 0.005;         // [m/s] while the depth is held
@@ -81,5 +82,11 @@ struct Task {
                  AssemblyTask>
         form;
 };
+
+/// Where a trial is judged, with its target at `X_WT`: of a peg_in_hole the bore's mouth, else the target.
+inline Pose judgedFrame(const Task& task, const Pose& X_WT) {
+    const auto* peg = std::get_if<PegInHoleTask>(&task.form);
+    return peg != nullptr ? X_WT * peg->X_TMouth : X_WT;
+}
 
 }  // namespace passung::plan

@@ -285,7 +285,8 @@ private:
     void checkWay(const plan::AssemblyTask&) {}
     void checkWay(const plan::PegInHoleTask& peg) {
         if (target_ != nullptr)
-            way("target", {target_->X_WP * Vec3(0, 0, -peg.success_fraction * peg.insertion_depth)}, 0.0, 1.0);
+            way("target", {target_->X_WP * (peg.X_TMouth * Vec3(0, 0, -peg.success_fraction * peg.insertion_depth))},
+                0.0, 1.0);
     }
     void checkWay(const plan::NarrowPassageTask& passage) {
         if (target_ != nullptr) way("target", {target_->X_WP.p}, 0.5 * passage.width, 1.0);

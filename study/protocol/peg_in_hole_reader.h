@@ -7,9 +7,9 @@
 
 namespace passung::protocol {
 
-/// Reads the keys of a peg_in_hole task: the scene has to have the peg and the bore. `target`: the part that it names,
-/// nullptr if that was reported already. @pre what one key alone can have wrong was not found
+/// Reads the keys of a peg_in_hole task. `target`: the part that it names, nullptr if that was reported already.
+/// `units`: of the file's lengths in a metre. @pre what one key alone can have wrong was not found
 plan::PegInHoleTask readPegInHole(const TableReader& read, const StudyTables& tables, const scene::SceneSpec& scene,
-                                  const scene::PartSpec* target, const plan::Task& task, Errors& errors);
+                                  const scene::PartSpec* target, const plan::Task& task, double units, Errors& errors);
 
 }  // namespace passung::protocol

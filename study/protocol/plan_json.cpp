@@ -19,13 +19,6 @@ std::string listOf(const std::vector<T>& items, Function json) {
     return jsonList(texts);
 }
 
-std::string poseJson(const Pose& pose) {
-    return JsonObject()
-        .json("position_m", jsonVector(pose.p))
-        .json("quaternion_wxyz", jsonNumbers({pose.q.w(), pose.q.x(), pose.q.y(), pose.q.z()}))
-        .str();
-}
-
 std::string partJson(const scene::PartSpec& part) {
     JsonObject json;
     json.text("name", part.name).boolean("held", part.held);

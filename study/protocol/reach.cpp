@@ -60,9 +60,10 @@ private:
         if (target_ == nullptr) return;
         const Node& at = valueOf("target");
         // Its axis along the bore's, by the shortest turn: a round peg may keep its yaw.
-        const Vec3 along = target_->X_WP.q * Vec3::UnitZ();
+        const Pose X_WMouth = target_->X_WP * peg.X_TMouth;
+        const Vec3 along = X_WMouth.q * Vec3::UnitZ();
         const Quat upright = rotationBetween(held_.X_WP.q * Vec3::UnitZ(), along) * held_.X_WP.q;
-        const Pose end{upright, target_->X_WP * Vec3(0, 0, -peg.success_fraction * peg.insertion_depth)};
+        const Pose end{upright, X_WMouth * Vec3(0, 0, -peg.success_fraction * peg.insertion_depth)};
         reach(end, 0.0, at, "task.target", "the end of the insertion");
         handleTurns(tiltBetween(held_.X_WP.q, end.q), kTilt, at, "task.target");
         for (const scene::PartSpec& other : scene_.parts)

@@ -4,6 +4,14 @@
 #include "study/protocol/trial_types.h"
 
 namespace passung::protocol {
+
+std::string poseJson(const Pose& pose) {
+    return JsonObject()
+        .json("position_m", jsonVector(pose.p))
+        .json("quaternion_wxyz", jsonNumbers({pose.q.w(), pose.q.x(), pose.q.y(), pose.q.z()}))
+        .str();
+}
+
 namespace {
 
 /// The keys between `target` and `timeout_s` of each type.
@@ -16,6 +24,8 @@ struct FormJson {
             .number("success_fraction", task.success_fraction)
             .number("max_speed_m_per_s", task.max_speed)
             .number("hold_s", task.hold);
+        const bool moved = !task.X_TMouth.p.isZero(0.0) || !task.X_TMouth.q.vec().isZero(0.0);
+        if (moved) json.json("mouth", poseJson(task.X_TMouth));
     }
     void operator()(const plan::NarrowPassageTask& task) const {
         json.number("passage_length_m", task.length).number("passage_width_m", task.width);

@@ -6,6 +6,9 @@
 
 namespace passung::protocol {
 
+/// {"position_m": [x, y, z], "quaternion_wxyz": [w, x, y, z]}
+std::string poseJson(const Pose& pose);
+
 /// Every number of a task, for the attempt's row.
 std::string taskJson(const plan::Task& task);
 

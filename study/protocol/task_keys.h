@@ -14,7 +14,9 @@ inline constexpr Range kTimeout{.low = 0, .high = 3600, .low_excluded = true};
 inline constexpr std::array kTaskKeys{
     Key{"task", "type", KeyType::Choice, {}, "peg_in_hole|narrow_passage|contour_following|free_placement|discrimination_pair|assembly", "!", "Kind of trial; its own keys follow."},
 
-    Key{"task.peg_in_hole", "target", KeyType::Text, {}, "", "!", "Name of the bore_plate part to insert into."},
+    Key{"task.peg_in_hole", "target", KeyType::Text, {}, "", "!", "Name of the part to insert into: a bore_plate, or with `clearance_mm` any part."},
+    Key{"task.peg_in_hole", "clearance_mm", KeyType::Number, kPositive, "", "(what the diameters leave)", "Play of the held part in the bore on every side of the axis. Of a peg in a bore_plate their diameters say it; of other parts, such as meshes, it has to be said here."},
+    Key{"task.peg_in_hole", "mouth", KeyType::Table, {}, "", "(the target's frame)", "Where the bore begins: a pose in the target's frame, its origin in the middle of the mouth, +z out of it. Not for a bore_plate, whose frame is that. The held part's origin is what goes in: its depth is that below the mouth."},
     Key{"task.peg_in_hole", "insertion_depth_mm", KeyType::Number, kPositive, "", "20", "Depth of the tip below the mouth that counts as fully inserted."},
     Key{"task.peg_in_hole", "success_fraction", KeyType::Number, {.low = 0, .high = 1, .low_excluded = true}, "", "0.95", "Part of that depth that is success."},
     Key{"task.peg_in_hole", "max_speed_mm_per_s", KeyType::Number, kPositive, "", "5", "Largest speed while the depth is held."},

@@ -164,7 +164,7 @@ plan::Task readTask(const StudyTables& tables, scene::SceneSpec* scene, Errors& 
     } else if (found->name == "narrow_passage") {
         task.form = plan::NarrowPassageTask{read.number("passage_length_mm"), read.number("passage_width_mm")};
     } else {
-        task.form = readPegInHole(read, tables, *scene, target, task, errors);
+        task.form = readPegInHole(read, tables, *scene, target, task, unitsOf(tables), errors);
     }
     return task;
 }

@@ -106,7 +106,7 @@ simulated::VisibleTask visibleTask(const plan::Condition& condition, BuiltParts 
         task.round = looksRound(*held);
     }
     if (const auto* target = plan::partNamed(condition.scene, condition.task.target)) {
-        task.X_WTarget = shownPose(*target);
+        task.X_WTarget = plan::judgedFrame(condition.task, shownPose(*target));
         if (target->held && target->hand > 0) task.target_hand = target->hand;
     }
     const auto& form = condition.task.form;

@@ -33,7 +33,8 @@ std::vector<RenderedScene> renderedScenes(const plan::Condition& condition, std:
 Result<Pose> targetPose(const plan::Condition& condition) {
     if (const auto* placement = std::get_if<plan::FreePlacementTask>(&condition.task.form)) return placement->X_WGoal;
     if (std::holds_alternative<plan::AssemblyTask>(condition.task.form)) return Pose{};  // each step has its own
-    if (const auto* part = plan::partNamed(condition.scene, condition.task.target)) return part->X_WP;
+    if (const auto* part = plan::partNamed(condition.scene, condition.task.target))
+        return plan::judgedFrame(condition.task, part->X_WP);
     Error error;
     error.message = fmt::format("condition {} has no part of this name", condition.name);
     error.key = "target";

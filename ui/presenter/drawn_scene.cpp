@@ -185,7 +185,7 @@ Result<std::shared_ptr<const DrawnScene>> SceneArtist::draw(const plan::Conditio
                         .shown_offset = part.shown_offset};
         if (part.held && part.hand > 0) drawn.other_hand = part.hand - 1;
         if (part.name == condition.task.target) {
-            X_WTarget = drawn.X_W;
+            X_WTarget = plan::judgedFrame(condition.task, drawn.X_W);
             scene->target_hand = drawn.other_hand;
         }
         if (held) {

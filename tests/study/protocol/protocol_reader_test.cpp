@@ -217,25 +217,43 @@ TEST(ProtocolReader, UnderstandsALatinSquare) {
     EXPECT_EQ(errorsOf(text + "order = \"latin\"\n").find("p.toml:"), 0u);
 }
 
-TEST(ProtocolReader, PointsAMeshToTheTypesThatTakeIt) {
-    // Truth: invariant (whoever has a mesh is told where it goes)
+TEST(ProtocolReader, APegInHoleOfOtherPartsSaysItsPlayAndWhereTheMouthIs) {
+    // Truth: the rules of KEYS.md; millimetres to metres, by hand.
     const auto mesh = std::filesystem::path(testing::TempDir()) / ("passung_peg_" + std::to_string(getpid()) + ".off");
     std::ofstream(mesh) << "OFF\n4 4 0\n0 0 0\n20 0 0\n0 20 0\n0 0 20\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
-    const std::string scene = R"([scene]
+    const auto scene = [&](const std::string& target) {
+        return R"([scene]
 part = [
-  { name = "plate", shape = { kind = "bore_plate", width = 60, depth = 60, height = 30, bore_diameter = 21, bore_depth = 25 } },
+  { name = "plate", shape = )" +
+               target + R"( },
   { name = "peg", held = true, mesh = ")" +
-                              mesh.string() + R"(", pose = { position = [0, 0, 30] } },
+               mesh.string() + R"(", pose = { position = [0, 0, 60] } },
 ]
 [scene.device]
 preset = "arm"
 )";
-    const std::string lines = errorsOf(kHead + scene + kTask + kFactors + kBlock);
+    };
+    const std::string bore =
+        "{ kind = \"bore_plate\", width = 60, depth = 60, height = 30, bore_diameter = 41, bore_depth = 25 }";
+    const std::string box =
+        "{ kind = \"square_bore_plate\", width = 80, depth = 80, height = 30, pocket_width = 42, "
+        "pocket_depth = 42, bore_depth = 25 }";
+    const auto told = [&](const std::string& target, const std::string& keys) {
+        return errorsOf(kHead + scene(target) + kTask + keys + kFactors + kBlock);
+    };
+    const auto has = [](const std::string& errors, const char* what) { return errors.find(what) != std::string::npos; };
+    EXPECT_TRUE(has(told(bore, ""), "task.clearance_mm: required: only of a `peg` in a `bore_plate`"))
+        << told(bore, "");
+    EXPECT_TRUE(has(told(bore, "clearance_mm = 0.5\nmouth = { position = [0, 0, 1] }\n"), "task.mouth"));
+    const auto plan =
+        read(kHead + scene(box) + kTask + "clearance_mm = 0.5\nmouth = { position = [1, 2, 3] }\n" + kFactors + kBlock);
     std::filesystem::remove(mesh);
-    EXPECT_NE(lines.find("the held part must have the shape peg in a peg_in_hole task; every shape and mesh serves in "
-                         "the types narrow_passage, contour_following, free_placement, discrimination_pair"),
-              std::string::npos)
-        << lines;
+    ASSERT_TRUE(plan) << toString(plan.errors().front());
+    const plan::Task& task = plan->conditions.front().task;
+    const auto& peg = std::get<plan::PegInHoleTask>(task.form);
+    EXPECT_DOUBLE_EQ(peg.clearance, 0.5e-3);
+    EXPECT_LT((peg.X_TMouth.p - Vec3(0.001, 0.002, 0.003)).norm(), 1e-15);
+    EXPECT_LT((plan::judgedFrame(task, {Quat::Identity(), Vec3(0, 0, 1)}).p - Vec3(0.001, 0.002, 1.003)).norm(), 1e-15);
 }
 
 TEST(ProtocolReader, WarnsOfPenaltiesThatNoStiffnessLimits) {
