@@ -142,7 +142,9 @@ TEST_F(AssemblyStudy, TellsOfEachHintWhenItCameUpAndCountsThem) {
         const std::string event = events.at(i, "event"), payload = events.at(i, "payload_json");
         const double now = std::stod(events.at(i, "t_s"));
         if (event == "trial_started" || payload.find("locked") != std::string::npos) {
-            if (event != "trial_started") EXPECT_EQ(shown, now - since >= 0.4 - 1e-9) << now;
+            if (event != "trial_started") {
+                EXPECT_EQ(shown, now - since >= 0.4 - 1e-9) << now;
+            }
             since = now;
             shown = false;
         }
