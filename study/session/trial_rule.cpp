@@ -39,7 +39,9 @@ TrialRule::AnyRule TrialRule::makeRule(const plan::Task& task, const scene::Scen
 
 TrialRule::Assembly TrialRule::makeAssembly(const plan::AssemblyTask& task, const scene::SceneSpec& scene) {
     const std::vector<scene::AssemblyStep>& steps = scene.effects.pick.steps;
-    return {task.steps, measures::AssemblyWatch(scene),
+    std::vector<std::optional<double>> free_paths(steps.size());
+    for (std::size_t i = 0; i < std::min(steps.size(), task.steps.size()); ++i) free_paths[i] = task.steps[i].free_path;
+    return {std::move(free_paths), measures::AssemblyWatch(scene),
             measures::HintWatch(steps, std::llround(task.hint_after / kTickSeconds)),
             std::vector<std::int64_t>(steps.size(), 0)};
 }
@@ -143,9 +145,10 @@ void TrialRule::describe(measures::TrialContext& context) const {
         context.form = measures::PlacementFacts{placement->task.round};
     } else if (const auto* assembly = std::get_if<Assembly>(&form_)) {
         std::vector<measures::StepResult> steps = assembly->watch.results(assembly->start.value_or(0));
-        for (std::size_t i = 0; i < std::min(steps.size(), assembly->asked.size()); ++i)
-            steps[i].free_path = assembly->asked[i].free_path;
-        for (std::size_t i = 0; i < steps.size(); ++i) steps[i].hints = assembly->hinted[i];
+        for (std::size_t i = 0; i < steps.size(); ++i) {
+            steps[i].free_path = assembly->free_paths[i];
+            steps[i].hints = assembly->hinted[i];
+        }
         context.form = measures::AssemblyFacts{std::move(steps)};
     } else {
         context.form = measures::PairFacts{std::get<Pair>(form_).comparison_interval};

@@ -82,7 +82,7 @@ private:
         measures::PairWatch watch;
     };
     struct Assembly {
-        std::vector<plan::AskedStep> asked;  // in the order of the scene's steps
+        std::vector<std::optional<double>> free_paths;  // of each step [m]
         measures::AssemblyWatch watch;
         measures::HintWatch hints;
         std::vector<std::int64_t> hinted;        // how often to each step

@@ -39,7 +39,7 @@ Rectangle {
                     objectName: "hint"
                     visible: line.modelData.hinted === true
                     width: look.scale * 4
-                    height: parent.height
+                    height: look.scale * 18
                     radius: 2
                     color: look.accent
                 }
