@@ -66,7 +66,7 @@ constexpr std::uint64_t kGuidance = 0x6e432e1f9b55594eu;
 constexpr std::uint64_t kSnap = 0xa448e8ff80ab833du;
 
 /// The same with inertia.
-constexpr std::uint64_t kInertia = 0x2180c17493badf9eu;
+constexpr std::uint64_t kInertia = 0x17375e9b9db688e0u;
 
 constexpr const char* kParts = R"(
 [[part]]
