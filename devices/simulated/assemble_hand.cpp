@@ -199,7 +199,7 @@ void AssembleHand::carry() noexcept {
 void AssembleHand::bring() noexcept {
     looks_ = 0;
     if (!(step().insertion > 0.0)) return reach(Stage::PutDown, seenGoal(), params_.approach_duration);
-    startInserting(seenMouth(), step().insertion, turns_ ? seenGoal().q : X_WRef_.q);
+    startInserting(seenMouth(), step().insertion, turns_ ? seenGoal().q : X_WRef_.q, step().folds == 0);
     stage_ = Stage::Insert;
 }
 
@@ -220,7 +220,8 @@ void AssembleHand::correct(const Percept& percept) noexcept {
     if (++looks_ > kCorrections) return enter(Stage::Open);
     const Pose X_WGoal = seenGoal();
     const double tilt_x = params_.tilt_error * perception_.normal();
-    const Vec3 tilt(tilt_x, params_.tilt_error * perception_.normal(), 0.0);
+    const double tilt_y = params_.tilt_error * perception_.normal();
+    const Vec3 tilt(tilt_x, tilt_y, step().folds == 0 ? 0.0 : params_.tilt_error * perception_.normal());
     const Vec3 turn = tilt + rotationVector(X_WGoal.q * percept.X_WSeen.q.conjugate());
     const Vec3 missing = X_WGoal.p - percept.X_WSeen.p + errorOfLooking();
     reach(Stage::PutDown, {(rotationFromVector(turn) * X_WRef_.q).normalized(), X_WRef_.p + missing}, kCorrectTime);

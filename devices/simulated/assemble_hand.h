@@ -10,8 +10,7 @@ namespace passung::simulated {
 /// A hand that picks parts up where it sees them and puts each where it belongs, step by step: it goes to the grip,
 /// closes, looks which part it has, carries it over what is around, inserts it as Hand does or puts it down as
 /// PlaceHand does, lets it go and looks whether the step is done; else it takes the part again and corrects. While
-/// nothing of its own may be done it waits where it is. It does not look for the turn of a part that goes in only one
-/// way round, nor hands parts over.
+/// nothing of its own may be done it waits where it is. It hands no parts over.
 class AssembleHand final : public Hand {
 public:
     /// @pre params.validate() is empty and task.goal is an AssembleGoal.

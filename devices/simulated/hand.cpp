@@ -37,6 +37,8 @@ constexpr double kBackOffLift = 1.5e-3;    // [m]
 constexpr double kWiggle = 0.6e-3;         // [m]
 constexpr double kWiggleTurn = 0.01;       // [rad]
 constexpr int kMostStalls = 2;             // pushes without depth before searching on
+constexpr int kFutileStalls = 4;           // so many, and less deep than
+constexpr double kShallow = 0.6;           // of the asked depth: what is not round is not in
 constexpr double kBeside = 3.0;            // standard deviations of seeing next to the hole: doubt
 constexpr double kExtraDepth = 1e-3;       // [m] beyond the asked depth, to be sure
 constexpr double kBottomShare = 0.88;      // of the asked depth: a stop there is taken for the end
@@ -45,6 +47,13 @@ constexpr double kEndSpeed = 2e-3;         // [m/s]
 constexpr double kSeenTurned = 0.05;       // [rad] off a quarter of the mouth's: part and mouth look turned
 constexpr double kSearchTurn = 0.03;       // [rad] to and fro about the axis, for what has failed and is not round
 constexpr double kSearchTurnRate = 0.9;    // [1/s]
+constexpr double kTurnRate = 0.6;          // [rad/s] about the axis, slowly
+constexpr double kTurnGrowth = 0.15;       // [rad] so much farther from swing to swing
+constexpr double kMostTurn = 0.6;          // [rad] to either side; nobody errs by more in what is seen
+constexpr double kTurnPitch = 1.0e-3;      // [m] between turns of the spiral, as wide as chamfers catch
+constexpr double kTurnSpeed = 0.5e-3;      // [m/s] along it: about half a pitch in a swing
+constexpr double kTurnRadius = 1.2e-3;     // [m] of that spiral; then a new look is worth more
+constexpr double kHeldBack = 0.2;          // [rad] the part is seen so far behind the turn: it is held by something
 constexpr double kGiveWay = 0.25;          // [s] time constant of yielding to the sides and in tilt
 constexpr double kSlideGain = 2.0;         // [1/s]; × delay of seeing < 1/2 keeps it stable
 constexpr double kSlideSpeed = 5e-3;       // [m/s]
@@ -52,8 +61,9 @@ constexpr double kSlideSpeed = 5e-3;       // [m/s]
 }  // namespace
 
 const char* phaseName(HandPhase phase) noexcept {
-    constexpr std::array<const char*, 11> kNames = {"to_start", "hold_start", "approach", "settle", "descend", "press",
-                                                    "search",   "insert",     "back_off", "lift",   "hold"};
+    constexpr std::array<const char*, 12> kNames = {"to_start", "hold_start", "approach", "settle",
+                                                    "descend",  "press",      "search",   "turn",
+                                                    "insert",   "back_off",   "lift",     "hold"};
     return kNames[static_cast<std::size_t>(phase)];
 }
 
@@ -97,6 +107,11 @@ bool Hand::looksTurned() const noexcept { return !task_.round && turns_ && std::
 // see searchTurn().
 void Hand::turnToFit() noexcept {
     if (task_.round || !turns_) return;
+    if (knows_turn_) {
+        ++turns_tried_;
+        fitting_turn_ = params_.tilt_error * perception_.normal();
+        return;
+    }
     constexpr std::array kQuarters{0, 0, 0, 1, -1, 2};
     const auto next = static_cast<std::size_t>(turns_tried_++) % (2 * kQuarters.size());
     const int quarters = kQuarters[next / 2];
@@ -111,6 +126,9 @@ Vec3 Hand::searchTurn(double tau) const noexcept {
     if (turns_tried_ == 0) return Vec3::Zero();
     return kSearchTurn * std::sin(kSearchTurnRate * tau) * (X_WM_.q * Vec3::UnitZ());
 }
+
+/// What did not go in and is not round is turned twice for each search without.
+bool Hand::searchesByTurning() const noexcept { return !task_.round && turns_ && attempt_ % 3 != 0; }
 
 double Hand::seenDepth(const Percept& percept) const noexcept {
     return percept.sees ? -(X_WM_.inverse() * percept.X_WSeen.p).z() : -1.0;
@@ -140,6 +158,13 @@ Vec3 Hand::feltForce(const Percept& percept) const noexcept { return X_WM_.q.con
 
 Vec3 Hand::feltTurn(const Percept& percept) const noexcept {
     return rotationVector(percept.X_WFelt.q * q_goal_.conjugate());
+}
+
+/// How far the part, as it is drawn or as the wrist feels it, stays behind the turn that is meant [rad].
+double Hand::turnHeldBack(const Percept& percept) const noexcept {
+    const Vec3 axis = X_WM_.q * Vec3::UnitZ();
+    const Vec3 shown = percept.sees ? seenTurn(percept) : feltTurn(percept);
+    return std::abs(twist_ - axis.dot(shown));
 }
 
 // ---- building blocks of movement --------------------------------------------------------------------------------
@@ -224,29 +249,37 @@ void Hand::press(const Percept& percept) noexcept {
 void Hand::startSearch() noexcept {
     centre_ = p_MP_;
     spiral_angle_ = 0.0;
+    twist_ = 0.0;
+    swing_ = searchesByTurning() ? (motor_.uniform() < 0.5 ? -kTurnGrowth : kTurnGrowth) : 0.0;
     resumeSearch();
 }
 
 void Hand::resumeSearch() noexcept {
     search_time_ = 0.0;
     caught_ = 0.0;
-    enter(HandPhase::Search);
+    enter(swing_ != 0.0 ? HandPhase::Turn : HandPhase::Search);
 }
 
-// Archimedean spiral r = pitch · angle / 2π at constant speed: angle' = v / sqrt(r² + (pitch/2π)²).
-void Hand::search(const Percept& percept) noexcept {
-    const double a = params_.search_pitch / (2.0 * std::numbers::pi);
-    const double r = a * spiral_angle_;
-    pressWith(params_.press_force, percept);
-    const double speed = (cued_ ? kCuedCare : 1.0) * params_.search_speed;
-    spiral_angle_ += kTickSeconds * pace_ * speed / std::hypot(r, a);
-    search_time_ += kTickSeconds;
-    // After an interruption the tip first comes back to the spiral, no faster than it searches.
+double Hand::spiralRadius(double pitch) const noexcept { return pitch / (2.0 * std::numbers::pi) * spiral_angle_; }
+
+// Archimedean spiral r = pitch · angle / 2π at constant speed: angle' = v / sqrt(r² + (pitch/2π)²). After an
+// interruption the tip first comes back to the spiral, no faster than `pursuit` [m/s].
+void Hand::followSpiral(double pitch, double speed, double pursuit) noexcept {
+    const double r = spiralRadius(pitch);
+    spiral_angle_ += kTickSeconds * pace_ * speed / std::hypot(r, pitch / (2.0 * std::numbers::pi));
     const Vec3 spiral = centre_ + Vec3(r * std::cos(spiral_angle_), r * std::sin(spiral_angle_), 0.0);
     Vec3 step = spiral - p_MP_;
     step.z() = 0.0;
-    const double most = 2.0 * speed * kTickSeconds;
+    const double most = pursuit * kTickSeconds;
     p_MP_ += step.norm() > most ? Vec3(step * (most / step.norm())) : step;
+}
+
+void Hand::search(const Percept& percept) noexcept {
+    const double r = spiralRadius(params_.search_pitch);
+    pressWith(params_.press_force, percept);
+    const double speed = (cued_ ? kCuedCare : 1.0) * params_.search_speed;
+    followSpiral(params_.search_pitch, speed, 2.0 * speed);
+    search_time_ += kTickSeconds;
     const double tau = 2.0 * std::numbers::pi * search_time_;
     const Vec3 wobble = params_.search_tilt * Vec3(std::sin(1.3 * tau), std::sin(1.7 * tau), 0.0);
     placeReference(p_MP_, turn_ + wobble + searchTurn(tau));
@@ -256,13 +289,49 @@ void Hand::search(const Percept& percept) noexcept {
     const bool held = search_time_ > kCaughtPause && (feltForce(percept).head<2>().norm() > kCaughtForce ||
                                                       (cued_ && percept.cue > 0.0 && seenCaught(percept)));
     caught_ = held ? caught_ + kTickSeconds : 0.0;
-    const double widest = std::min(params_.first_search_radius * (attempt_ + 1), params_.last_search_radius);
+    const int searches = task_.round || !turns_ ? attempt_ : attempt_ / 3;  // before this one
+    const double widest = std::min(params_.first_search_radius * (searches + 1), params_.last_search_radius);
     if (depth > baseline_ + kDrop || caught_ > kCaughtTime) {
-        best_depth_ = depth;
-        stalled_ = 0.0;
-        stalls_ = 0;
-        enter(HandPhase::Insert);
+        foundIt(depth);
     } else if (r > widest) {
+        giveUp();
+    }
+}
+
+void Hand::foundIt(double depth) noexcept {
+    best_depth_ = depth;
+    stalled_ = 0.0;
+    stalls_ = 0;
+    enter(HandPhase::Insert);
+}
+
+/// One tick of turning to and fro: at each end back, and farther than before up to kMostTurn.
+void Hand::swing() noexcept {
+    const double side = swing_ > 0.0 ? 1.0 : -1.0;
+    twist_ += side * pace_ * (cued_ ? kCuedCare : 1.0) * kTurnRate * kTickSeconds;
+    if (side * twist_ < side * swing_) return;
+    swing_ = -side * std::min(std::abs(swing_) + kTurnGrowth, kMostTurn);
+}
+
+// A form that fits at few turns only: the tip stays where it is and turns; what fits drops in. The wrist is far stiffer
+// against a turn than the arm against the sides: walls put the tip where it belongs, but not the turn. Having turned
+// all the way in vain the tip goes on beside, still turning.
+void Hand::turn(const Percept& percept) noexcept {
+    pressWith(params_.press_force, percept);
+    swing();
+    search_time_ += kTickSeconds;
+    if (std::abs(swing_) >= kMostTurn) followSpiral(kTurnPitch, kTurnSpeed, params_.search_speed);
+    turn_ = twist_ * (X_WM_.q * Vec3::UnitZ());
+    const double tau = 2.0 * std::numbers::pi * search_time_;
+    placeReference(p_MP_, turn_ + params_.search_tilt * Vec3(std::sin(1.3 * tau), std::sin(1.7 * tau), 0.0));
+
+    const double depth = seenDepth(percept);
+    const bool held =
+        search_time_ > kCaughtPause && depth > baseline_ + 0.5 * kDrop && turnHeldBack(percept) > kHeldBack;
+    caught_ = held ? caught_ + kTickSeconds : 0.0;
+    if (depth > baseline_ + kDrop || caught_ > kCaughtTime) {
+        foundIt(depth);
+    } else if (spiralRadius(kTurnPitch) > kTurnRadius) {
         giveUp();
     }
 }
@@ -326,11 +395,15 @@ void Hand::backOff(const Percept& percept) noexcept {
     stalled_ = 0.0;
     // A soft wall gives way under more force; only what is deeper than that is inside.
     const double yields = std::max(baseline_, 0.0) * params_.insert_force / params_.press_force + kDrop;
-    if (best_depth_ > std::max(yields, kClearlyInside) || stalls_ < kMostStalls) {
+    const bool shallow = best_depth_ < kShallow * task_.insertion_depth;
+    if (!task_.round && shallow && stalls_ >= kFutileStalls) {
+        giveUp();  // in soft walls, or caught turned
+    } else if (best_depth_ > std::max(yields, kClearlyInside) || stalls_ < kMostStalls) {
         enter(HandPhase::Insert);
     } else if (turns_tried_ == 0 && looksTurned()) {
         giveUp();
-    } else if (spiral_angle_ > 0.0) {
+    } else if (spiral_angle_ > 0.0 || swing_ != 0.0) {
+        twist_ = turn_.dot(X_WM_.q * Vec3::UnitZ());
         resumeSearch();
     } else {
         giveUp();
@@ -341,6 +414,7 @@ void Hand::lift() noexcept {
     X_WRef_ = reach_.at(t_);
     if (t_ < reach_.duration) return;
     spiral_angle_ = 0.0;
+    swing_ = 0.0;
     enter(HandPhase::Settle);
 }
 
@@ -353,15 +427,18 @@ void Hand::hold(const Percept& percept) noexcept {
     enter(HandPhase::Insert);
 }
 
-void Hand::startInserting(const Pose& X_WMouth, double depth, const Quat& q_WP) noexcept {
+void Hand::startInserting(const Pose& X_WMouth, double depth, const Quat& q_WP, bool round) noexcept {
     task_.X_WHeldStart.q = q_WP;
+    task_.round = round;
+    knows_turn_ = true;
     task_.insertion_depth = depth;
     X_WTarget_ = X_WMouth;
     attempt_ = 0;
     spiral_angle_ = 0.0;
     bottomed_ = doubted_ = false;
     turns_tried_ = 0;
-    fitting_turn_ = 0.0;
+    swing_ = twist_ = 0.0;
+    fitting_turn_ = round || !turns_ ? 0.0 : params_.tilt_error * perception_.normal();
     look();
     startReach(HandPhase::Approach, aboveMouth(), params_.approach_duration / pace_);
 }
@@ -377,7 +454,7 @@ void Hand::stopPushing(const Percept& percept) noexcept {
 }
 
 void Hand::startSliding(const Pose& X_WMouth, double depth, const Quat& q_WP) noexcept {
-    startInserting(X_WMouth, depth, q_WP);
+    startInserting(X_WMouth, depth, q_WP, true);  // as it is turned
     p_MP_ = X_WM_.inverse() * X_WRef_.p;
     turn_ = rotationVector(X_WRef_.q * q_goal_.conjugate());
     enter(HandPhase::Hold);
@@ -409,6 +486,8 @@ void Hand::choose(const Percept& percept) noexcept {
             return press(percept);
         case HandPhase::Search:
             return search(percept);
+        case HandPhase::Turn:
+            return turn(percept);
         case HandPhase::Insert:
             return insert(percept);
         case HandPhase::BackOff:

@@ -16,6 +16,7 @@ enum class HandPhase {
     Descend,    // down until something is felt or the part is seen inside
     Press,      // lean on it and look whether it goes in
     Search,     // a growing spiral under light pressure
+    Turn,       // to and fro about the axis under light pressure, farther and farther, then along a spiral too
     Insert,     // push along the bore, give way to the sides
     BackOff,    // stuck: pull back a little and wiggle
     Lift,       // nothing found: up and look again
@@ -38,8 +39,9 @@ protected:
     void choose(const Percept& percept) noexcept override;
 
     /// From now on choose() puts the held part's origin `depth` [m] deep into the bore whose mouth is seen there, the
-    /// part turned as `q_WP` but for the bore's axis. It begins with a reach to above the mouth.
-    void startInserting(const Pose& X_WMouth, double depth, const Quat& q_WP) noexcept;
+    /// part turned as `q_WP` but for the bore's axis. It begins with a reach to above the mouth. Where it is not
+    /// `round` the turn about the axis is looked at as well, with an error, and searched for.
+    void startInserting(const Pose& X_WMouth, double depth, const Quat& q_WP, bool round) noexcept;
     /// As deep as asked, or on the ground, as far as it is seen.
     bool isInserted(const Percept& percept) const noexcept;
     /// It went no deeper, near the asked depth.
@@ -64,6 +66,7 @@ private:
     bool looksTurned() const noexcept;
     void turnToFit() noexcept;
     Vec3 searchTurn(double tau) const noexcept;
+    bool searchesByTurning() const noexcept;
     double seenDepth(const Percept& percept) const noexcept;
     Vec3 seenPosition(const Percept& percept) const noexcept;
     Pose aboveMouth() const noexcept;
@@ -75,6 +78,8 @@ private:
     void descend(const Percept& percept) noexcept;
     void press(const Percept& percept) noexcept;
     void search(const Percept& percept) noexcept;
+    void turn(const Percept& percept) noexcept;
+    void swing() noexcept;
     void insert(const Percept& percept) noexcept;
     void backOff(const Percept& percept) noexcept;
     void lift() noexcept;
@@ -83,6 +88,9 @@ private:
     void pressWith(double force, const Percept& percept) noexcept;
     void startSearch() noexcept;
     void resumeSearch() noexcept;
+    void followSpiral(double pitch, double speed, double pursuit) noexcept;
+    double spiralRadius(double pitch) const noexcept;
+    void foundIt(double depth) noexcept;
     void giveUp() noexcept;
     void placeReference(const Vec3& p_MP, const Vec3& turn) noexcept;
     bool seenHeld(const Percept& percept) const noexcept;
@@ -90,6 +98,7 @@ private:
     Vec3 feltPosition(const Percept& percept) const noexcept;
     Vec3 feltForce(const Percept& percept) const noexcept;
     Vec3 feltTurn(const Percept& percept) const noexcept;
+    double turnHeldBack(const Percept& percept) const noexcept;
     Vec3 seenTurn(const Percept& percept) const noexcept;
 
     HandPhase phase_ = HandPhase::ToStart;
@@ -107,6 +116,8 @@ private:
     int attempt_ = 0;             // searches since go
     int turns_tried_ = 0;         // of them with the part turned to fit
     double spiral_angle_ = 0.0;   // [rad]
+    double twist_ = 0.0;          // about the axis, while searching by turning [rad]
+    double swing_ = 0.0;          // where to it turns; 0: it does not search by turning [rad]
     double caught_ = 0.0;         // how long something has held the tip sideways [s]
     double search_time_ = 0.0;    // since the spiral was last taken up [s]
     double best_depth_ = 0.0;     // seen so far in this push [m]
@@ -115,7 +126,8 @@ private:
     Vec3 wiggle_ = Vec3::Zero();
     Vec3 wiggle_turn_ = Vec3::Zero();
     bool bottomed_ = false;
-    bool doubted_ = false;  // has once pulled out because it looked wrong
+    bool knows_turn_ = false;  // it is known how the part is to be turned, but for what the eye errs
+    bool doubted_ = false;     // has once pulled out because it looked wrong
 };
 
 }  // namespace passung::simulated

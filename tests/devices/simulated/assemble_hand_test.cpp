@@ -41,6 +41,9 @@ struct Trial {
     Vec3 shown_offset = Vec3::Zero();  // of the first peg
     bool guarded = false;
     double bore = kPlate, depth = kDepth;  // [m] of the bores, and how deep pegs go in
+    bool keyed = false;                    // the first peg has a key, and fits at one turn only
+    double start_turn = 0.0;               // [rad] of that peg about its axis
+    double drawn_turn = 0.0;               // [rad] of its goal as it is shown to the person
 };
 
 struct Outcome {
@@ -51,6 +54,9 @@ struct Outcome {
     std::uint64_t hash = 0;
     std::uint64_t told = 0;  // steps that the image says are done
     std::int64_t violations = 0;
+    int taken = 0;           // how often a hand closed on the first peg
+    double most_turn = 0.0;  // [rad] of the first hand's handle, from its posture at the start
+    double left_turn = 0.0;  // [rad] of the first peg about its axis at the end
 };
 
 Pose at(double x, double y, double z) { return {Quat::Identity(), Vec3(x, y, z)}; }
@@ -76,6 +82,12 @@ scene::SceneSpec sceneOf(const Trial& trial) {
                    .X_WP = at(-0.06, 0.0, 0.5 * kBlock + kLift),
                    .pickable = true}};
     spec.parts[kFirstPeg].shown_offset = trial.shown_offset;
+    if (trial.keyed) {
+        spec.parts[kFirstPlate].geometry =
+            shape::KeyedBorePlate{0.04, 0.04, kPlate, 0.0102, 3.2e-3, 1.6e-3, trial.bore, 5e-4};
+        spec.parts[kFirstPeg].geometry = shape::KeyedPeg{0.010, kPegLength, 3e-3, 1.5e-3, 5e-4};
+        spec.parts[kFirstPeg].X_WP.q = rotationFromVector({0, 0, trial.start_turn});
+    }
     spec.contact.method = scene::ContactMethod::GodObject;
     spec.contact.geometry = trial.geometry;
     spec.contact.stiffness = 1500.0;
@@ -95,6 +107,7 @@ scene::SceneSpec sceneOf(const Trial& trial) {
     std::vector<AssemblyStep>& steps = spec.effects.pick.steps;
     steps.resize(3);
     steps[0] = {.part = kFirstPeg, .X_IGoal = at(0, -0.025, kPlate - trial.depth), .folds = 0};
+    if (trial.keyed) steps[0].folds = 1;
     steps[1] = {.part = kBlockPart, .X_IGoal = at(0.05, 0.0, 0.5 * kBlock + kLift), .folds = 2};
     steps[1].X_IGoal.q = rotationFromVector({0, 0, trial.turn});
     steps[2] = {.part = kSecondPeg, .X_IGoal = at(0, 0.025, kPlate - trial.depth), .folds = 0, .after = 1};
@@ -120,6 +133,7 @@ VisibleTask taskOf(const scene::SceneSpec& spec, const Trial& trial, std::size_t
                               .insertion = step.part == kBlockPart ? 0.0 : trial.depth,
                               .after = step.after,
                               .mine = trial.hands == 1 || (step.part == kFirstPeg) == (hand == 0)});
+    goal.steps[0].X_IGoal.q = rotationFromVector({0, 0, trial.drawn_turn});
     goal.hand = hand;
     goal.on_press = trial.on_press;
     VisibleTask task;
@@ -193,6 +207,9 @@ Outcome run(const Trial& trial) {
     Outcome outcome;
     for (const scene::PartSpec& part : spec.parts) outcome.parts.push_back(part.X_WP);
     std::int64_t since_done = 0;
+    TickRecord first;
+    bool held_before = false;
+    Quat q_first = Quat::Identity();
     for (std::int64_t k = 0; k < kMost && since_done < 300; ++k) {
         cycle.run();
         const loop::DisplayedImage& image = devices.front()->image;
@@ -201,14 +218,25 @@ Outcome run(const Trial& trial) {
         for (std::size_t i = 0; i < trial.hands; ++i) {
             std::array<TickRecord, 16> records;
             rings[i]->take(records);
+            if (i == 0) first = records[0];
             if (image.held[i] == static_cast<std::int32_t>(kFirstPeg)) outcome.picked_first = true;
             empty = empty && image.held[i] < 0;
         }
+        const bool holds = first.held == static_cast<std::int32_t>(kFirstPeg);
+        outcome.taken += holds && !held_before ? 1 : 0;
+        held_before = holds;
+        const auto& q = first.device_quaternion;
+        if (k == 1000) q_first = Quat(q[0], q[1], q[2], q[3]);
+        if (k > 1000)
+            outcome.most_turn =
+                std::max(outcome.most_turn, rotationVector(Quat(q[0], q[1], q[2], q[3]) * q_first.conjugate()).norm());
         outcome.told = image.steps_done;
         since_done = image.steps_done == 7 && empty ? since_done + 1 : 0;
         outcome.time = 1e-3 * static_cast<double>(k);
     }
     outcome.finished = since_done > 0 && isThere(trial, outcome);
+    const Vec3 key = outcome.parts[kFirstPeg].q * Vec3::UnitX();
+    outcome.left_turn = std::atan2(key.y(), key.x());
     outcome.hash = cycle.stateHash();
     for (const auto& device : devices) outcome.violations += device->violations;
     return outcome;
@@ -256,6 +284,41 @@ TEST_P(Assemblers, FinishAllStepsWithinTwoMinutes) {
     std::printf("%s: %d of %d, median %.1f s, longest %.1f s\n", way.name, finished, trials, times[times.size() / 2],
                 times.back());
     EXPECT_GE(finished, trials - 1);
+}
+
+/// How many of the seeds finish with the keyed peg, whose key has to lie in its keyway, and how.
+struct Keyed {
+    int finished = 0, trials = 0, least_taken = 1000;
+    double most_turn = 0.0;
+};
+Keyed runKeyed(double start_turn, double drawn_turn) {
+    Keyed keyed;
+    keyed.trials = test::atFullLength() ? 40 : 6;
+    std::vector<double> times;
+    for (int i = 0; i < keyed.trials; ++i) {
+        const double way = i % 2 == 0 ? 1.0 : -1.0;
+        const Outcome outcome = run({.seed = static_cast<std::uint64_t>(i + 1),
+                                     .keyed = true,
+                                     .start_turn = way * start_turn,
+                                     .drawn_turn = way * drawn_turn});
+        const bool in = outcome.finished && std::abs(outcome.left_turn) < kTurn;
+        keyed.finished += in ? 1 : 0;
+        keyed.least_taken = std::min(keyed.least_taken, outcome.taken);
+        keyed.most_turn = std::max(keyed.most_turn, outcome.most_turn);
+        times.push_back(outcome.time);
+        if (!in) std::printf("seed %d told %d turn %.3f\n", i + 1, static_cast<int>(outcome.told), outcome.left_turn);
+    }
+    std::ranges::sort(times);
+    std::printf("keyed, start %.2f, drawn %.2f: %d of %d, median %.1f s, taken %d times or more, turned by %.2f rad\n",
+                start_turn, drawn_turn, keyed.finished, keyed.trials, times[times.size() / 2], keyed.least_taken,
+                keyed.most_turn);
+    return keyed;
+}
+
+TEST(AssembleHand, AKeyedPegGoesInWhoseGoalIsDrawnTurnedBy20Degrees) {
+    // Truth: the geometry of the keyway: with 0.1 mm of play the key lies in it within 2 degrees or not at all.
+    const Keyed keyed = runKeyed(0.0, 20.0 * std::numbers::pi / 180.0);
+    EXPECT_GE(20 * keyed.finished, 19 * (keyed.trials - 1));
 }
 
 TEST(AssembleHand, SameSeedMovesTheSameBitForBitAndAnotherOneElse) {
