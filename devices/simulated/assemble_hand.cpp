@@ -26,6 +26,7 @@ constexpr int kSlides = 2;            // of a part that is in the bore, before i
 constexpr double kInside = 4e-3;      // [m] below the mouth, and no farther beside it: in the bore
 constexpr int kPushes = 2;            // in a row without depth: then each time a new look whether it is in
 constexpr double kInserted = 0.88;    // of the depth asked for, as seen: it is in
+constexpr double kWristRange = 1.2;   // [rad] of turning what is held, from how it was taken; then it is taken anew
 constexpr double kTurned = 1e-4;      // [rad] the posture has changed: the handle can be turned
 
 /// Of the turns of `q_goal` about its z axis that make no difference the one nearest to `q`.
@@ -179,7 +180,22 @@ void AssembleHand::weigh(const Percept& percept) noexcept {
     X_DP_ = percept.X_WFelt.inverse() * percept.X_WSeen;
     X_DP_.q.normalize();
     regrip(X_DP_);
+    if (turns_ && !isInBore() && wristTurn().norm() > kWristRange) return turnOnTheWay();
     setOut();
+}
+
+/// By how much the wrist would be turned at the goal against how it takes parts, a rotation vector in W.
+Vec3 AssembleHand::wristTurn() const noexcept {
+    return rotationVector(seenGoal().q * X_DP_.q.conjugate() * q_empty_.conjugate());
+}
+
+/// What the wrist cannot turn in one go is turned as far as it can, put down where it was and taken anew.
+void AssembleHand::turnOnTheWay() noexcept {
+    takes_anew_ = true;
+    p_taken_ = X_WRef_.p;
+    const Vec3 way = wristTurn();
+    const Quat q_there = rotationFromVector(way * (kWristRange / way.norm())) * q_empty_ * X_DP_.q;
+    reach(Stage::TurnUp, {q_there.normalized(), X_WRef_.p + kOver * Vec3::UnitZ()}, kLiftTime);
 }
 
 /// With the part in the hand.
@@ -241,7 +257,8 @@ void AssembleHand::open(const Percept& percept) noexcept {
 void AssembleHand::check(const Percept& percept) noexcept {
     const bool done = (percept.steps_done >> step_ & 1u) != 0;
     if (!done && t_ < params_.visual_delay + kCheckTime) return;
-    tries_ = done ? 0 : tries_ + 1;
+    if (!takes_anew_) tries_ = done ? 0 : tries_ + 1;
+    takes_anew_ = false;
     reach(Stage::Leave, {q_empty_, X_WRef_.p + kOver * Vec3::UnitZ()}, kDownTime);
 }
 
@@ -249,7 +266,7 @@ void AssembleHand::choose(const Percept& late) noexcept {
     Percept percept = late;
     take(percept);
     if (inHand(percept) >= 0) percept.X_WSeen = where_[static_cast<std::size_t>(inHand(percept))];
-    const bool carries = stage_ >= Stage::Lift && stage_ <= Stage::Correct;
+    const bool carries = stage_ >= Stage::TurnUp && stage_ <= Stage::Correct;
     if (carries && inHand(percept) != step().part) enter(Stage::Open);  // somebody took it
     switch (stage_) {
         case Stage::ToStart:
@@ -272,6 +289,10 @@ void AssembleHand::choose(const Percept& late) noexcept {
             return close(percept);
         case Stage::Weigh:
             return weigh(percept);
+        case Stage::TurnUp:
+            return arrived() ? reach(Stage::LayDown, {X_WRef_.q, p_taken_}, kDownTime) : void();
+        case Stage::LayDown:
+            return arrived() ? enter(Stage::Open) : void();
         case Stage::Lift:
             return arrived() ? carry() : void();
         case Stage::Carry:

@@ -9,7 +9,8 @@ namespace passung::simulated {
 
 /// A hand that picks parts up where it sees them and puts each where it belongs, step by step: it goes to the grip,
 /// closes, looks which part it has, carries it over what is around, inserts it as Hand does or puts it down as
-/// PlaceHand does, lets it go and looks whether the step is done; else it takes the part again and corrects. While
+/// PlaceHand does, lets it go and looks whether the step is done; else it takes the part again and corrects. What has
+/// to be turned farther than the wrist can it puts down on the way, turned as far as it can, and takes it anew. While
 /// nothing of its own may be done it waits where it is. It hands no parts over.
 class AssembleHand final : public Hand {
 public:
@@ -28,6 +29,8 @@ private:
         Steady,   // stand still, correct what friction held back
         Close,    // the button, then look what is in the hand
         Weigh,    // stand still, look how the part lies in the hand
+        TurnUp,   // a little up, turned as far as the wrist can
+        LayDown,  // back down, to take it anew
         Lift,     // clear of what is around
         Carry,    // to above the goal
         Insert,   // as Hand
@@ -53,6 +56,8 @@ private:
     void look(const Percept& percept) noexcept;
     void close(const Percept& percept) noexcept;
     void weigh(const Percept& percept) noexcept;
+    Vec3 wristTurn() const noexcept;
+    void turnOnTheWay() noexcept;
     void setOut() noexcept;
     void carry() noexcept;
     void bring() noexcept;
@@ -85,7 +90,9 @@ private:
     bool turned_ = false;
     int tries_ = 0;  // at the step that were not done when the part was let go
     int looks_ = 0;
-    bool rested_ = false;  // the pause of a lapse is over
+    bool takes_anew_ = false;      // the part is let go to be taken turned
+    Vec3 p_taken_ = Vec3::Zero();  // where it was taken
+    bool rested_ = false;          // the pause of a lapse is over
 };
 
 }  // namespace passung::simulated

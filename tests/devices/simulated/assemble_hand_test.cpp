@@ -321,6 +321,16 @@ TEST(AssembleHand, AKeyedPegGoesInWhoseGoalIsDrawnTurnedBy20Degrees) {
     EXPECT_GE(20 * keyed.finished, 19 * (keyed.trials - 1));
 }
 
+TEST(AssembleHand, WhatLiesTurnedFartherThanAWristReachesIsTakenAnew) {
+    // Truth: the device's own readings: the handle never turns by much more than the range of 1.2 rad, so that a part
+    // that lies turned by 2.1 rad cannot have come to its goal in one go; one that lies turned by 0.9 rad can.
+    const Keyed far = runKeyed(2.1, 0.0), near = runKeyed(0.9, 0.0);
+    EXPECT_GE(20 * far.finished, 19 * (far.trials - 1));
+    EXPECT_GE(far.least_taken, 2);
+    EXPECT_LT(far.most_turn, 1.4);
+    EXPECT_EQ(near.least_taken, 1);
+}
+
 TEST(AssembleHand, SameSeedMovesTheSameBitForBitAndAnotherOneElse) {
     // Truth: invariant.
     const Outcome first = run({.seed = 5}), again = run({.seed = 5}), other = run({.seed = 6});
