@@ -56,14 +56,14 @@ Result<plan::StudyPlan> gearboxVarying(const std::string& key, const std::string
 
 TEST(ShippedFiles, AFactorReachesAStepAndAFurtherHandByTheirNames) {
     // Truth: closed form: each level, in metres, where the file's own lines put the step and the hand.
-    const auto steps = gearboxVarying("task.step.key.position_tolerance_mm", "[1.2, 0.4]");
+    const auto steps = gearboxVarying("task.step.key_in.position_tolerance_mm", "[1.2, 0.4]");
     ASSERT_TRUE(steps) << toString(steps.errors()[0]);
     ASSERT_EQ(steps->conditions.size(), 2u);
     const auto tolerance = [&](std::size_t condition, std::size_t step) {
         return steps->conditions[condition].scene.effects.pick.steps.at(step).position_tolerance;
     };
-    EXPECT_DOUBLE_EQ(tolerance(0, 4), 1.2e-3);
-    EXPECT_DOUBLE_EQ(tolerance(1, 4), 0.4e-3);
+    EXPECT_DOUBLE_EQ(tolerance(0, 6), 1.2e-3);
+    EXPECT_DOUBLE_EQ(tolerance(1, 6), 0.4e-3);
     for (const std::size_t other : {0u, 3u, 5u}) EXPECT_EQ(tolerance(0, other), tolerance(1, other));
 
     const auto paths = gearboxVarying("task.step.key.path_mm", "[80.5, 92]");
@@ -84,7 +84,7 @@ TEST(ShippedFiles, AFactorReachesAStepAndAFurtherHandByTheirNames) {
 
     for (const auto& [key, message] : {std::pair("task.step.lid.position_tolerance_mm", "the task has no step"),
                                        std::pair("hand.third.registration.scale", "the scene has no further hand"),
-                                       std::pair("task.step.key.position_tolerance", "unknown key")}) {
+                                       std::pair("task.step.key_in.position_tolerance", "unknown key")}) {
         const auto wrong = gearboxVarying(key, "[1, 2]");
         ASSERT_FALSE(wrong) << key;
         EXPECT_NE(toString(wrong.errors()[0]).find(message), std::string::npos) << toString(wrong.errors()[0]);
