@@ -27,6 +27,9 @@ constexpr double kInside = 4e-3;      // [m] below the mouth, and no farther bes
 constexpr int kPushes = 2;            // in a row without depth: then each time a new look whether it is in
 constexpr double kInserted = 0.88;    // of the depth asked for, as seen: it is in
 constexpr double kWristRange = 1.2;   // [rad] of turning what is held, from how it was taken; then it is taken anew
+constexpr double kReserve = 5e-3;     // [m] within the end of its reach a hand does not work
+constexpr double kMoved = 1e-3;       // [m] less is standing still
+constexpr double kOffered = 0.5;      // [s] that a part stands still in another hand, to be taken from it
 constexpr double kTurned = 1e-4;      // [rad] the posture has changed: the handle can be turned
 
 /// Of the turns of `q_goal` about its z axis that make no difference the one nearest to `q`.
@@ -81,16 +84,59 @@ void AssembleHand::take(const Percept& percept) noexcept {
         where_[i] = {X_WP.q, X_WP.p + goal_.parts[i].shown_offset};
     };
     see(percept.at_rest.part, percept.at_rest.X_WP);
-    for (std::size_t hand = 0; hand < percept.held.size(); ++hand) see(percept.held[hand], percept.X_WHeld[hand]);
+    for (std::size_t hand = 0; hand < percept.held.size(); ++hand) {
+        see(percept.held[hand], percept.X_WHeld[hand]);
+        stands_[hand] += kTickSeconds;
+        if ((percept.X_WHeld[hand].p - p_held_[hand]).norm() < kMoved) continue;
+        p_held_[hand] = percept.X_WHeld[hand].p;
+        stands_[hand] = 0.0;
+    }
 }
 
 bool AssembleHand::mayBeDone(const Step& step, std::size_t number, const Percept& percept) const noexcept {
-    if (!step.mine || (percept.steps_done >> number & 1u) != 0 || (step.after & ~percept.steps_done) != 0) return false;
+    if ((percept.steps_done >> number & 1u) != 0 || (step.after & ~percept.steps_done) != 0) return false;
     for (std::size_t hand = 0; hand < percept.held.size(); ++hand) {
         const std::int32_t held = percept.held[hand];
         if (held >= 0 && (held == step.into || (held == step.part && hand != goal_.hand))) return false;
     }
     return inHand(percept) < 0 || inHand(percept) == step.part;
+}
+
+bool AssembleHand::reaches(std::size_t hand, const Vec3& p) const noexcept {
+    if (hand >= goal_.reaches.size()) return true;
+    return (p - goal_.reaches[hand].middle).norm() < goal_.reaches[hand].radius - kReserve;
+}
+
+/// The hand that is to do the step does not get to where its part is, and another one does.
+bool AssembleHand::needsHelp(const Step& step) const noexcept {
+    const auto part = static_cast<std::size_t>(step.part);
+    const Vec3 grip = where_[part] * goal_.parts[part].grip;
+    if (reaches(step.hand, grip)) return false;
+    for (std::size_t hand = 0; hand < goal_.reaches.size(); ++hand)
+        if (reaches(hand, grip)) return true;
+    return false;
+}
+
+/// Another hand holds the part of a step of this one's still, within its reach.
+bool AssembleHand::isOffered(const Step& step, const Percept& percept) const noexcept {
+    const auto part = static_cast<std::size_t>(step.part);
+    if (inHand(percept) >= 0 || !reaches(goal_.hand, where_[part] * goal_.parts[part].grip)) return false;
+    for (std::size_t hand = 0; hand < percept.held.size(); ++hand)
+        if (hand != goal_.hand && percept.held[hand] == step.part && stands_[hand] > kOffered) return true;
+    return false;
+}
+
+/// Another hand has what this one holds.
+bool AssembleHand::isShared(const Percept& percept) const noexcept {
+    for (std::size_t hand = 0; hand < percept.held.size(); ++hand)
+        if (hand != goal_.hand && percept.held[hand] >= 0 && percept.held[hand] == inHand(percept)) return true;
+    return false;
+}
+
+/// Where the part is carried to: above its goal, or between two hands.
+Vec3 AssembleHand::destination() const noexcept {
+    if (!gives_) return seenMouth().p;
+    return 0.5 * (goal_.reaches[goal_.hand].middle + goal_.reaches[step().hand].middle);
 }
 
 Pose AssembleHand::seenGoal() const noexcept {
@@ -118,8 +164,8 @@ bool AssembleHand::looksInserted() noexcept {
 
 /// Of the origin of what is carried [m], so that it passes over the goal and over the parts beside the way.
 double AssembleHand::clearHeight() const noexcept {
-    const Vec3 to = seenMouth().p;
-    double top = step().insertion > 0.0 ? to.z() : to.z() - part().below;
+    const Vec3 to = destination();
+    double top = gives_ || step().insertion > 0.0 ? to.z() : to.z() - part().below;
     for (std::size_t i = 0; i < where_.size(); ++i) {
         const Vec3 grip = where_[i] * goal_.parts[i].grip;
         if (static_cast<std::int32_t>(i) != step().part && besideWay(grip, X_WRef_.p, to) < kCorridor)
@@ -147,9 +193,16 @@ void AssembleHand::toStart(const Percept& percept) noexcept {
 void AssembleHand::chooseStep(const Percept& percept) noexcept {
     if (!touches(percept)) removeOffset(percept);
     for (std::size_t i = 0; i < goal_.steps.size(); ++i) {
-        if (!mayBeDone(goal_.steps[i], i, percept)) continue;
+        const Step& next = goal_.steps[i];
+        const bool mine = next.hand == goal_.hand;
+        const bool offered = mine && isOffered(next, percept);
+        if (!offered && !mayBeDone(next, i, percept)) continue;
+        const auto part = static_cast<std::size_t>(next.part);
+        const bool helps = !mine && needsHelp(next) && reaches(goal_.hand, where_[part] * goal_.parts[part].grip);
+        if (mine ? !offered && inHand(percept) < 0 && needsHelp(next) : !helps) continue;
         if (i != step_) tries_ = 0;
         step_ = i;
+        gives_ = helps;
         if (inHand(percept) >= 0) {
             if (!goal_.on_press) buttons_ = goal_.close;  // what was in the hand from the start can be let go as well
             return setOut();
@@ -176,11 +229,12 @@ void AssembleHand::close(const Percept& percept) noexcept {
 
 void AssembleHand::weigh(const Percept& percept) noexcept {
     if (t_ > kPressDuration && goal_.on_press) buttons_ = 0;
+    if (isShared(percept)) return restartClock();
     if (t_ < params_.visual_delay + kLookTime / pace_) return;
     X_DP_ = percept.X_WFelt.inverse() * percept.X_WSeen;
     X_DP_.q.normalize();
     regrip(X_DP_);
-    if (turns_ && !isInBore() && wristTurn().norm() > kWristRange) return turnOnTheWay();
+    if (turns_ && !gives_ && !isInBore() && wristTurn().norm() > kWristRange) return turnOnTheWay();
     setOut();
 }
 
@@ -208,15 +262,24 @@ void AssembleHand::setOut() noexcept {
 }
 
 void AssembleHand::carry() noexcept {
+    const Vec3 to = destination();
+    if (gives_) return reach(Stage::Carry, {X_WRef_.q, Vec3(to.x(), to.y(), X_WRef_.p.z())}, params_.approach_duration);
     const Pose X_WMouth = seenMouth();
     reach(Stage::Carry, {X_WMouth.q, Vec3(X_WMouth.p.x(), X_WMouth.p.y(), X_WRef_.p.z())}, params_.approach_duration);
 }
 
 void AssembleHand::bring() noexcept {
     looks_ = 0;
+    if (gives_) return enter(Stage::Give);
     if (!(step().insertion > 0.0)) return reach(Stage::PutDown, seenGoal(), params_.approach_duration);
     startInserting(seenMouth(), step().insertion, turns_ ? seenGoal().q : X_WRef_.q, step().folds == 0);
     stage_ = Stage::Insert;
+}
+
+void AssembleHand::give(const Percept& percept) noexcept {
+    if (!touches(percept)) removeOffset(percept);
+    if (!isShared(percept)) return restartClock();
+    if (t_ > kLookTime) enter(Stage::Open);
 }
 
 void AssembleHand::insert(const Percept& percept) noexcept {
@@ -257,7 +320,7 @@ void AssembleHand::open(const Percept& percept) noexcept {
 void AssembleHand::check(const Percept& percept) noexcept {
     const bool done = (percept.steps_done >> step_ & 1u) != 0;
     if (!done && t_ < params_.visual_delay + kCheckTime) return;
-    if (!takes_anew_) tries_ = done ? 0 : tries_ + 1;
+    if (!takes_anew_ && !gives_) tries_ = done ? 0 : tries_ + 1;
     takes_anew_ = false;
     reach(Stage::Leave, {q_empty_, X_WRef_.p + kOver * Vec3::UnitZ()}, kDownTime);
 }
@@ -297,6 +360,8 @@ void AssembleHand::choose(const Percept& late) noexcept {
             return arrived() ? carry() : void();
         case Stage::Carry:
             return arrived() ? bring() : void();
+        case Stage::Give:
+            return give(percept);
         case Stage::Insert:
             return insert(percept);
         case Stage::Slide:

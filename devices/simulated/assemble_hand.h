@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,7 +12,8 @@ namespace passung::simulated {
 /// closes, looks which part it has, carries it over what is around, inserts it as Hand does or puts it down as
 /// PlaceHand does, lets it go and looks whether the step is done; else it takes the part again and corrects. What has
 /// to be turned farther than the wrist can it puts down on the way, turned as far as it can, and takes it anew. While
-/// nothing of its own may be done it waits where it is. It hands no parts over.
+/// nothing of its own may be done it waits where it is, or helps: a part that the hand of its step does not reach it
+/// fetches, holds still between both, and lets go when the other hand has it.
 class AssembleHand final : public Hand {
 public:
     /// @pre params.validate() is empty and task.goal is an AssembleGoal.
@@ -28,11 +30,12 @@ private:
         Down,     // reach to the grip
         Steady,   // stand still, correct what friction held back
         Close,    // the button, then look what is in the hand
-        Weigh,    // stand still, look how the part lies in the hand
+        Weigh,    // stand still until no other hand has it, look how the part lies in the hand
         TurnUp,   // a little up, turned as far as the wrist can
         LayDown,  // back down, to take it anew
         Lift,     // clear of what is around
         Carry,    // to above the goal
+        Give,     // hold it until the other hand has it
         Insert,   // as Hand
         Slide,    // to the depth as seen
         PutDown,  // reach to the goal
@@ -60,6 +63,7 @@ private:
     void turnOnTheWay() noexcept;
     void setOut() noexcept;
     void carry() noexcept;
+    void give(const Percept& percept) noexcept;
     void bring() noexcept;
     void insert(const Percept& percept) noexcept;
     void correct(const Percept& percept) noexcept;
@@ -71,6 +75,11 @@ private:
     const Pose& seenPart() const noexcept { return where_[static_cast<std::size_t>(step().part)]; }
     std::int32_t inHand(const Percept& percept) const noexcept { return percept.held[goal_.hand]; }
     bool mayBeDone(const Step& step, std::size_t number, const Percept& percept) const noexcept;
+    bool reaches(std::size_t hand, const Vec3& p) const noexcept;
+    bool needsHelp(const Step& step) const noexcept;
+    bool isOffered(const Step& step, const Percept& percept) const noexcept;
+    bool isShared(const Percept& percept) const noexcept;
+    Vec3 destination() const noexcept;
     Pose seenGoal() const noexcept;
     Pose seenMouth() const noexcept;
     Vec3 seenGrip() const noexcept { return seenPart() * part().grip; }
@@ -80,16 +89,19 @@ private:
     Vec3 errorOfLooking() noexcept;
 
     const AssembleGoal& goal_;
-    Pose X_DEmpty_;            // HandRegistration::X_DH of the hand that holds nothing
-    Quat q_empty_;             // its orientation when it goes for a part
-    Pose X_DP_;                // the part in the hand
-    std::vector<Pose> where_;  // each part, as last seen
+    Pose X_DEmpty_;                                   // HandRegistration::X_DH of the hand that holds nothing
+    Quat q_empty_;                                    // its orientation when it goes for a part
+    Pose X_DP_;                                       // the part in the hand
+    std::vector<Pose> where_;                         // each part, as last seen
+    std::array<Vec3, scene::kMostHands> p_held_{};    // where what each hand holds was when it last moved
+    std::array<double, scene::kMostHands> stands_{};  // how long it has stood there [s]
     Stage stage_ = Stage::ToStart;
     std::size_t step_ = 0;
     Quat q_first_;  // the handle's posture when it was taken
     bool turned_ = false;
     int tries_ = 0;  // at the step that were not done when the part was let go
     int looks_ = 0;
+    bool gives_ = false;           // the step is another hand's, which does not reach the part
     bool takes_anew_ = false;      // the part is let go to be taken turned
     Vec3 p_taken_ = Vec3::Zero();  // where it was taken
     bool rested_ = false;          // the pause of a lapse is over

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -40,7 +41,7 @@ struct AssembleGoal {
         int folds = 1;  // turned about its z axis by a full turn / folds the part is as before; 0: by any angle
         double insertion = 0.0;   // [m] that it goes in along the goal's -z; 0: it is only put there
         std::uint64_t after = 0;  // a bit for each step that has to be done before
-        bool mine = true;         // to be done by this hand
+        std::size_t hand = 0;     // that is to do it, in the order of DisplayedImage::held
     };
     struct Part {
         Pose X_W;                          // at the start
@@ -48,11 +49,17 @@ struct AssembleGoal {
         double below = 0.0;                // how far it reaches below its origin, along its z [m]
         Vec3 shown_offset = Vec3::Zero();  // drawn so far from where images tell it to be, world axes [m]
     };
-    std::vector<Part> parts;  // of the scene
-    std::vector<Step> steps;  // in the order of DisplayedImage::steps_done
-    std::uint32_t close = 1;  // the buttons that close the hand
-    std::size_t hand = 0;     // whose goal this is, in the order of DisplayedImage::held
-    bool on_press = false;    // a press closes it, the next one opens it; else it is closed while they are down
+    /// A ball in which a hand can be.
+    struct Reach {
+        Vec3 middle = Vec3::Zero();
+        double radius = std::numeric_limits<double>::infinity();  // [m]
+    };
+    std::vector<Part> parts;     // of the scene
+    std::vector<Step> steps;     // in the order of DisplayedImage::steps_done
+    std::uint32_t close = 1;     // the buttons that close the hand
+    std::size_t hand = 0;        // whose goal this is, in the order of DisplayedImage::held
+    std::vector<Reach> reaches;  // how far each hand gets, as practice has told; of those that are missing everywhere
+    bool on_press = false;       // a press closes it, the next one opens it; else it is closed while they are down
 };
 
 /// The held part is to stay where it starts.

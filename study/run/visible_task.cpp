@@ -1,10 +1,12 @@
 #include "study/run/visible_task.h"
 
 #include <limits>
+#include <string>
 #include <variant>
 
 #include "core/geometry/triangle_distance.h"
 #include "core/shape/shape.h"
+#include "devices/simulated/presets.h"
 #include "study/plan/scene_parts.h"
 
 namespace passung::run {
@@ -61,6 +63,21 @@ simulated::Quantity quantityOf(plan::Judged judged) {
     return simulated::Quantity::Stiffness;
 }
 
+/// Of each hand, in the world. Navigation takes a hand everywhere.
+std::vector<simulated::AssembleGoal::Reach> reachesOf(const plan::Condition& condition) {
+    std::vector<simulated::AssembleGoal::Reach> reaches;
+    for (std::size_t hand = 0; hand < condition.scene.handCount(); ++hand) {
+        const std::string* name = hand == 0 ? &condition.device : nullptr;
+        if (hand > 0 && hand <= condition.other_devices.size()) name = &condition.other_devices[hand - 1];
+        const scene::HandSpec spec = condition.scene.hand(hand);
+        const auto* device = name != nullptr ? simulated::findPreset(*name) : nullptr;
+        auto& reach = reaches.emplace_back();
+        if (device == nullptr || spec.navigation.any()) continue;
+        reach = {spec.registration.X_WB.p, spec.registration.scale * device->workspace_radius.value};
+    }
+    return reaches;
+}
+
 simulated::VisibleTask assemblyTask(const plan::Condition& condition, const plan::AssemblyTask& asked, std::size_t hand,
                                     BuiltParts parts) {
     const scene::Pick& pick = condition.scene.effects.pick;
@@ -77,7 +94,7 @@ simulated::VisibleTask assemblyTask(const plan::Condition& condition, const plan
              .folds = step.folds,
              .insertion = described ? asked.steps[i].insertion : 0.0,
              .after = step.after,
-             .mine = (described ? asked.steps[i].hand : 0) == hand});
+             .hand = described ? asked.steps[i].hand : 0});
         const auto* shape = std::get_if<shape::Shape>(&condition.scene.parts[step.part].geometry);
         if (shape != nullptr)
             findGrip(shape::tessellate(*shape, kChordError), goal.parts[step.part]);
@@ -86,6 +103,7 @@ simulated::VisibleTask assemblyTask(const plan::Condition& condition, const plan
     }
     goal.close = 1u << (pick.button - 1);
     goal.hand = hand;
+    goal.reaches = reachesOf(condition);
     goal.on_press = pick.on_press;
     simulated::VisibleTask task;
     task.blind = !condition.shows_scene;

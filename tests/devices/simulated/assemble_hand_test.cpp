@@ -41,6 +41,7 @@ struct Trial {
     Vec3 shown_offset = Vec3::Zero();  // of the first peg
     bool guarded = false;
     double bore = kPlate, depth = kDepth;  // [m] of the bores, and how deep pegs go in
+    double apart = 0.0;                    // [m] of the middles of two hands along x
     bool keyed = false;                    // the first peg has a key, and fits at one turn only
     double start_turn = 0.0;               // [rad] of that peg about its axis
     double drawn_turn = 0.0;               // [rad] of its goal as it is shown to the person
@@ -54,6 +55,7 @@ struct Outcome {
     std::uint64_t hash = 0;
     std::uint64_t told = 0;  // steps that the image says are done
     std::int64_t violations = 0;
+    int handed = 0;          // parts that one hand took from the other
     int taken = 0;           // how often a hand closed on the first peg
     double most_turn = 0.0;  // [rad] of the first hand's handle, from its posture at the start
     double left_turn = 0.0;  // [rad] of the first peg about its axis at the end
@@ -101,9 +103,12 @@ scene::SceneSpec sceneOf(const Trial& trial) {
     spec.effects.pick = {.reach = 0.004, .button = 1, .on_press = trial.on_press};
     for (std::size_t i = 1; i < trial.hands; ++i) {
         scene::HandSpec hand{spec.limits, spec.registration, spec.start_gate, "hand 2", {}};
-        hand.start_gate.X_WH.p.y() += 0.05;
+        hand.start_gate.X_WH.p += Vec3(0.5 * trial.apart, 0.05, 0.0);
+        hand.registration.X_WB.p.x() += 0.5 * trial.apart;
         spec.other_hands.push_back(hand);
     }
+    spec.registration.X_WB.p.x() -= 0.5 * trial.apart;
+    spec.start_gate.X_WH.p.x() -= 0.5 * trial.apart;
     std::vector<AssemblyStep>& steps = spec.effects.pick.steps;
     steps.resize(3);
     steps[0] = {.part = kFirstPeg, .X_IGoal = at(0, -0.025, kPlate - trial.depth), .folds = 0};
@@ -132,8 +137,11 @@ VisibleTask taskOf(const scene::SceneSpec& spec, const Trial& trial, std::size_t
                               .folds = step.folds,
                               .insertion = step.part == kBlockPart ? 0.0 : trial.depth,
                               .after = step.after,
-                              .mine = trial.hands == 1 || (step.part == kFirstPeg) == (hand == 0)});
+                              .hand = trial.hands == 1 || step.part == kFirstPeg ? std::size_t{0} : std::size_t{1}});
     goal.steps[0].X_IGoal.q = rotationFromVector({0, 0, trial.drawn_turn});
+    for (std::size_t i = 0; i < trial.hands && trial.apart > 0.0; ++i)
+        goal.reaches.push_back(
+            {spec.hand(i).registration.X_WB.p, trial.scale * findPreset(trial.device)->workspace_radius.value});
     goal.hand = hand;
     goal.on_press = trial.on_press;
     VisibleTask task;
@@ -148,7 +156,7 @@ public:
     Watched(const Trial& trial, const scene::SceneSpec& spec, std::size_t hand)
         : trial_(trial),
           device_(*findPreset(trial.device), HandParams{}, taskOf(spec, trial, hand),
-                  {spec.registration.X_WB, trial.scale, spec.registration.X_DH}, trial.seed + 1000 * hand) {}
+                  {spec.hand(hand).registration.X_WB, trial.scale, spec.registration.X_DH}, trial.seed + 1000 * hand) {}
 
     const DeviceDescription& description() const override { return device_.description(); }
     DeviceReading read() noexcept override {
@@ -209,6 +217,7 @@ Outcome run(const Trial& trial) {
     std::int64_t since_done = 0;
     TickRecord first;
     bool held_before = false;
+    std::int32_t handed = -1;
     Quat q_first = Quat::Identity();
     for (std::int64_t k = 0; k < kMost && since_done < 300; ++k) {
         cycle.run();
@@ -221,6 +230,10 @@ Outcome run(const Trial& trial) {
             if (i == 0) first = records[0];
             if (image.held[i] == static_cast<std::int32_t>(kFirstPeg)) outcome.picked_first = true;
             empty = empty && image.held[i] < 0;
+            if (i > 0 && image.held[i] >= 0 && image.held[i] == image.held[0] && image.held[i] != handed) {
+                handed = image.held[i];
+                ++outcome.handed;
+            }
         }
         const bool holds = first.held == static_cast<std::int32_t>(kFirstPeg);
         outcome.taken += holds && !held_before ? 1 : 0;
@@ -329,6 +342,21 @@ TEST(AssembleHand, WhatLiesTurnedFartherThanAWristReachesIsTakenAnew) {
     EXPECT_GE(far.least_taken, 2);
     EXPECT_LT(far.most_turn, 1.4);
     EXPECT_EQ(near.least_taken, 1);
+}
+
+TEST(AssembleHand, WhatOneHandDoesNotReachTheOtherHandsOver) {
+    // Truth: distances by hand. Balls of 75 mm about (-35, 0, 60) and (35, 0, 60) mm: the right hand does not get to
+    // the second peg and the block at x = -60, nor the left one to the block's goal at x = 50.
+    const int trials = test::atFullLength() ? 20 : 4;
+    int finished = 0;
+    for (int seed = 1; seed <= trials; ++seed) {
+        const Outcome outcome =
+            run({.seed = static_cast<std::uint64_t>(seed), .hands = 2, .device = "sigma7", .apart = 0.07});
+        finished += outcome.finished && outcome.handed == 2 ? 1 : 0;
+        std::printf("seed %d told %d handed %d %.1f s\n", seed, static_cast<int>(outcome.told), outcome.handed,
+                    outcome.time);
+    }
+    EXPECT_GE(finished, trials - 1);
 }
 
 TEST(AssembleHand, SameSeedMovesTheSameBitForBitAndAnotherOneElse) {

@@ -33,6 +33,23 @@ plan::Condition assembly() {
     return condition;
 }
 
+TEST(VisibleTask, EachHandKnowsHowFarEveryHandGets) {
+    // Truth: closed form: a sigma.7 moves its handle in a ball of 75 mm, here at twice the scale; a clutch goes on and
+    // on.
+    plan::Condition condition = assembly();
+    condition.device = "sigma7";
+    condition.other_devices = {"sigma7"};
+    condition.scene.registration.X_WB.p = Vec3(0.1, 0.2, 0.3);
+    condition.scene.registration.scale = 2.0;
+    condition.scene.other_hands[0].navigation.clutch.button = 2;
+    const simulated::VisibleTask task = otherTask(condition, 1);
+    const auto& reaches = std::get<simulated::AssembleGoal>(task.goal).reaches;
+    ASSERT_EQ(reaches.size(), 2u);
+    EXPECT_EQ(reaches[0].middle, Vec3(0.1, 0.2, 0.3));
+    EXPECT_DOUBLE_EQ(reaches[0].radius, 0.15);
+    EXPECT_TRUE(std::isinf(reaches[1].radius));
+}
+
 TEST(VisibleTask, AnAssemblyShowsEachHandItsStepsAndPartsWhereTheyAreDrawn) {
     // Truth: the scene and the task above, by hand.
     const plan::Condition condition = assembly();
@@ -51,11 +68,11 @@ TEST(VisibleTask, AnAssemblyShowsEachHandItsStepsAndPartsWhereTheyAreDrawn) {
         EXPECT_EQ(goal.steps[0].into, 0);
         EXPECT_EQ(goal.steps[0].folds, 0);
         EXPECT_EQ(goal.steps[0].insertion, 0.015);
-        EXPECT_EQ(goal.steps[0].mine, hand == 0);
+        EXPECT_EQ(goal.steps[0].hand, 0u);
         EXPECT_EQ(goal.steps[1].into, -1);
         EXPECT_EQ(goal.steps[1].insertion, 0.0);
         EXPECT_EQ(goal.steps[1].after, 1u);
-        EXPECT_EQ(goal.steps[1].mine, hand == 1);
+        EXPECT_EQ(goal.steps[1].hand, 1u);
     }
 }
 
