@@ -70,12 +70,13 @@ Result<Scene> buildScene(const SceneSpec& spec, PartCache& cache) {
     for (std::size_t i = 0; i < spec.parts.size(); ++i) {
         const PartSpec& part = spec.parts[i];
         const bool obstacle = !part.held || part.pickable || spec.handCount() > 1;
-        auto built = cache.get(part, {.field = fields && (obstacle || spec.contact.two_way),
-                                      .shell = fields && (part.moves() || spec.contact.two_way),
-                                      .clusters = geometry == Geometry::Surface || (part.moves() && spec.effects.keep_apart.any()),
-                                      .tolerance = spec.contact.tolerance,
-                                      .cell = spec.contact.cell,
-                                      .spacing = spec.contact.spacing});
+        auto built = cache.get(
+            part, {.field = fields && (obstacle || spec.contact.two_way),
+                   .shell = fields && (part.moves() || spec.contact.two_way),
+                   .clusters = geometry == Geometry::Surface || (part.moves() && spec.effects.keep_apart.any()),
+                   .tolerance = spec.contact.tolerance,
+                   .cell = spec.contact.cell,
+                   .spacing = spec.contact.spacing});
         if (!built) return built.errors();
         if (const auto problem = weightProblem(spec, part, **built)) return *problem;
         scene.parts.push_back(std::move(*built));

@@ -25,8 +25,9 @@ namespace passung::tick {
 ///
 /// Symbols: h a hand, H_h and G_h its pose and its proxy, K the coupling's stiffness, which all hands share; u_h the
 /// motion of G_h that is looked for, w_h the way from G_h to H_h, both in the hand's metric (motion/metric.h: c_h,
-/// S_h), of a part in two hands times √2, as K counts twice there, and of one with inertia by the root of its stiffness; i a contact of the part in hand h at point P_i with
-/// normal n_i away from the obstacle and room g_i to go before it holds; r_ih = P_i - c_h.
+/// S_h), of a part in two hands times √2, as K counts twice there, and of one with inertia by the root of its
+/// stiffness; i a contact of the part in hand h at point P_i with normal n_i away from the obstacle and room g_i to go
+/// before it holds; r_ih = P_i - c_h.
 ///   min Σ_h ½K |u_h - w_h|²   s.t.   a_ih · u_h - a_ij · u_j ≥ -g_i,   a_ih = (n_i, S_h⁻¹ r_ih × n_i),
 /// the second term only where the obstacle is in hand j: strictly convex in six unknowns a hand, solved exactly
 /// (active_set.h). Its multipliers λ_i ≥ 0 are the contacts' forces K λ_i n_i, on one part and against the other.

@@ -16,8 +16,8 @@ inline constexpr double kWallGive = 0.0002;
 /// |force| > 1e-6 N or |torque| > 1e-9 N·m or contacts > 0. The force alone would miss contact while a guard holds
 /// the output at zero; the points alone would miss a proxy, which rests a hair above the surface. Where no wrench is
 /// displayed (kWrenchWithheld) the points at the hand's pose stand in for it: hand_depth_m > 0. Where the held part's
-/// weight is displayed (kWeighed), another effect that acts in the air (kAidedInAir), contacts > 0 alone tell: these are forces
-/// in the air.
+/// weight is displayed (kWeighed), another effect that acts in the air (kAidedInAir), contacts > 0 alone tell: these
+/// are forces in the air.
 bool isContact(const TickRecord& record);
 
 /// Depth of the proxy's origin (the peg's tip) below the bore's mouth [m], ≥ 0; empty if the tip is not in the bore:

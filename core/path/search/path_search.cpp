@@ -73,14 +73,14 @@ std::shared_ptr<ob::SE3StateSpace> spaceOf(const FreeRoom& room, const Pose& a, 
 }
 
 /// A pull: where the part is asked to go, as a way of its origin and a turn about it, world axes.
-using Pull = Eigen::Matrix<double, 6, 1>;
+using PulledWay = Eigen::Matrix<double, 6, 1>;
 
-Pull pullOf(const oc::Control* control) {
+PulledWay pullOf(const oc::Control* control) {
     const double* values = control->as<oc::RealVectorControlSpace::ControlType>()->values;
-    return Eigen::Map<const Pull>(values);
+    return Eigen::Map<const PulledWay>(values);
 }
 
-Pose pulled(const Pose& X, const Pull& pull) {
+Pose pulled(const Pose& X, const PulledWay& pull) {
     Pose to{rotationFromVector(pull.tail<3>()) * X.q, X.p + pull.head<3>()};
     to.q.normalize();
     return to;
@@ -106,8 +106,8 @@ public:
 
     unsigned int sampleTo(oc::Control* control, const ob::State* source, ob::State* dest) override {
         const Pose X = poseOf(source);
-        const Pull pull = choose(X, poseOf(dest));
-        Eigen::Map<Pull>(control->as<oc::RealVectorControlSpace::ControlType>()->values) = pull;
+        const PulledWay pull = choose(X, poseOf(dest));
+        Eigen::Map<PulledWay>(control->as<oc::RealVectorControlSpace::ControlType>()->values) = pull;
         const Pose end = room_.slide(X, pulled(X, pull)).back();
         if (wayBetween(X, end, room_.reach()) < kNoWay) return 0;
         setPose(dest, end);
@@ -118,10 +118,10 @@ public:
     }
 
 private:
-    Pull choose(const Pose& X, const Pose& X_to) {
+    PulledWay choose(const Pose& X, const Pose& X_to) {
         constexpr double kAlongAxis = 0.25, kWayAlone = 0.55;
         const double kind = random_.uniform01(), longest = kLongestPull * room_.reach();
-        Pull pull = Pull::Zero();
+        PulledWay pull = PulledWay::Zero();
         if (kind < kAlongAxis) {
             const Vec3 axis = X.q * Vec3::Unit(random_.uniformInt(0, 2));
             pull.head<3>() = (random_.uniformBool() ? longest : -longest) * random_.uniformReal(0.2, 1.0) * axis;
@@ -194,7 +194,7 @@ std::optional<std::vector<Pose>> pullStraightOut(const FreeRoom& room, const Pos
     for (const double sign : {1.0, -1.0}) {
         for (const int axis : {2, 0, 1}) {
             if (SearchClock::now() > end) return std::nullopt;
-            Pull pull = Pull::Zero();
+            PulledWay pull = PulledWay::Zero();
             pull.head<3>() = sign * far * (X.q * Vec3(Vec3::Unit(axis)));
             auto way = room.slide(X, pulled(X, pull));
             if (endWhereOut(room, way)) return way;

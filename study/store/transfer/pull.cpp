@@ -14,9 +14,9 @@ namespace passung::store {
 namespace {
 
 /// Copies tables from PostgreSQL into a database of this program's schema.
-class Pull {
+class SessionPull {
 public:
-    Pull(pqxx::work& work, const Database& here) : work_(work), here_(here), tables_(sessionTables(here)) {}
+    SessionPull(pqxx::work& work, const Database& here) : work_(work), here_(here), tables_(sessionTables(here)) {}
 
     void study() {
         for (const SessionTable& table : studyTables(here_)) {
@@ -129,7 +129,7 @@ void pullSessions(const std::string& from, const std::string& like, const std::s
             throw std::runtime_error("PostgreSQL holds no study " + name);
         here.execute("PRAGMA foreign_keys=OFF");
         Transaction transaction(here);
-        Pull pull(work, here);
+        SessionPull pull(work, here);
         pull.study();
         Statement sessions = own.prepare("SELECT session_id FROM session");
         while (sessions.step()) pull.session(sessions.text(0));
