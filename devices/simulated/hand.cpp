@@ -396,13 +396,11 @@ void Hand::backOff(const Percept& percept) noexcept {
     // A soft wall gives way under more force; only what is deeper than that is inside.
     const double yields = std::max(baseline_, 0.0) * params_.insert_force / params_.press_force + kDrop;
     const bool shallow = best_depth_ < kShallow * task_.insertion_depth;
-    if (!task_.round && shallow && stalls_ >= kFutileStalls) {
-        giveUp();  // in soft walls, or caught turned
-    } else if (best_depth_ > std::max(yields, kClearlyInside) || stalls_ < kMostStalls) {
+    const bool futile = !task_.round && shallow && stalls_ >= kFutileStalls;  // in soft walls, or caught turned
+    const bool turned = turns_tried_ == 0 && looksTurned();
+    if (!futile && (best_depth_ > std::max(yields, kClearlyInside) || stalls_ < kMostStalls)) {
         enter(HandPhase::Insert);
-    } else if (turns_tried_ == 0 && looksTurned()) {
-        giveUp();
-    } else if (spiral_angle_ > 0.0 || swing_ != 0.0) {
+    } else if (!futile && !turned && (spiral_angle_ > 0.0 || swing_ != 0.0)) {
         twist_ = turn_.dot(X_WM_.q * Vec3::UnitZ());
         resumeSearch();
     } else {

@@ -520,7 +520,8 @@ void checkDrawing(const TableReader& effects_table, const TableReader& contact_t
     const bool guides = share > 0.0, snaps = effects.snap.any(), apart = effects.keep_apart.any();
     if (device == nullptr || contact_table.boolean("allow_unstable") || !(guides || snaps || apart)) return;
     const std::string effect = guides ? "guidance" : snaps ? "snap" : "keep_apart";
-    const TableReader read(*effects_table.node(effect), {"effects." + effect}, effects_table.pathOf(effect), errors);
+    const std::string id = "effects." + effect;
+    const TableReader read(*effects_table.node(effect), {id}, effects_table.pathOf(effect), errors);
     std::string other;
     if (guides && snaps) other += " and effects.snap";
     if ((guides || snaps) && apart) other += " and effects.keep_apart";

@@ -518,7 +518,7 @@ TEST(ExportSamples, ColumnsAndChannelsAgree) {
     EXPECT_EQ(columnsOf(moved, {Extra::Navigation}), fewest + 9);
     EXPECT_EQ(columnsOf(held, {Extra::Bodies}), fewest + 2);
     EXPECT_EQ(columnsOf(fake::withBodies(3, moved), {Extra::Navigation, Extra::Bodies}), fewest + 11);
-    EXPECT_EQ(columnsOf(fake::withEffects(3, plain), {Extra::Effects}), fewest + 32);
+    EXPECT_EQ(columnsOf(fake::withEffects(3, plain), {Extra::Effects}), fewest + 44);
 }
 
 }  // namespace

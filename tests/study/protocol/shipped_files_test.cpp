@@ -66,11 +66,11 @@ TEST(ShippedFiles, AFactorReachesAStepAndAFurtherHandByTheirNames) {
     EXPECT_DOUBLE_EQ(tolerance(1, 6), 0.4e-3);
     for (const std::size_t other : {0u, 3u, 5u}) EXPECT_EQ(tolerance(0, other), tolerance(1, other));
 
-    const auto paths = gearboxVarying("task.step.key.path_mm", "[80.5, 92]");
+    const auto paths = gearboxVarying("task.step.key_in.path_mm", "[80.5, 92]");
     ASSERT_TRUE(paths) << toString(paths.errors()[0]);
     for (const std::size_t i : {0u, 1u}) {
         const auto& asked = std::get<plan::AssemblyTask>(paths->conditions[i].task.form).steps;
-        EXPECT_DOUBLE_EQ(asked.at(4).free_path.value_or(0.0), i == 0 ? 0.0805 : 0.092);
+        EXPECT_DOUBLE_EQ(asked.at(6).free_path.value_or(0.0), i == 0 ? 0.0805 : 0.092);
         EXPECT_FALSE(asked.at(3).free_path);
     }
 
