@@ -298,8 +298,8 @@ TEST(Inertia, WithoutAnObstacleTheFreePartIsAMassToo) {
     }
 }
 
-TEST(Inertia, TwoHandsOnOnePartFeelItsMassTogether) {
-    // Truth: Newton: the sum of what both feel is -m a.
+/// The box at rest between two hands that can take it.
+scene::SceneSpec boxForTwoHands() {
     auto spec = boxOverPlate(kClosedForm);
     spec.parts[0].held = false;
     spec.parts[0].pickable = true;
@@ -308,6 +308,13 @@ TEST(Inertia, TwoHandsOnOnePartFeelItsMassTogether) {
     auto second = spec.start_gate;
     second.X_WH.p.y() += 0.04;
     spec.other_hands.push_back({spec.limits, spec.registration, second});
+    return spec;
+}
+
+TEST(Inertia, TwoHandsOnOnePartFeelItsMassTogether) {
+    // Truth: Newton: the sum of what both feel is -m a.
+    const auto spec = boxForTwoHands();
+    const scene::StartGate& second = spec.other_hands.front().start_gate;
     test::Bench bench(spec);
     std::array<tick::TickOutput, 2> out;
     for (int i = 0; i < 900; ++i) {
@@ -329,14 +336,8 @@ TEST(Inertia, TwoHandsOnOnePartFeelItsMassTogether) {
 
 TEST(Inertia, ThePartKeepsItsMomentumWhereOneOfTwoHandsLetsGo) {
     // Truth: Newton: both hands go on at the same speed, so that no force is needed, before and after.
-    auto spec = boxOverPlate(kClosedForm);
-    spec.parts[0].held = false;
-    spec.parts[0].pickable = true;
-    spec.effects.pick = {.reach = 0.05};
-    spec.start_gate.X_WH = {Quat::Identity(), spec.parts[0].X_WP.p + Vec3(0, -0.02, 0)};
-    auto second = spec.start_gate;
-    second.X_WH.p.y() += 0.04;
-    spec.other_hands.push_back({spec.limits, spec.registration, second});
+    const auto spec = boxForTwoHands();
+    const scene::StartGate& second = spec.other_hands.front().start_gate;
     for (const std::size_t first_opens : {std::size_t{0}, std::size_t{1}}) {
         test::Bench bench(spec);
         std::array<tick::TickOutput, 2> out;
