@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "study/plan/scene_parts.h"
+#include "study/protocol/scene_node.h"
 #include "study/protocol/table_reader.h"
 
 namespace passung::protocol {
