@@ -14,11 +14,10 @@ namespace passung::cli {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kTouching = 2e-6;         // [m]
 constexpr double kShortestPrinted = 5e-6;  // [m] less is a length of 0.00 mm
 
 /// Clearances of this path are those of contacts.
-bool slides(const path::PathMeasures& of) { return !(of.proven > 0.0) && of.least.distance < kTouching; }
+bool slides(const path::PathMeasures& of) { return !(of.proven > 0.0) && of.least.distance < feasible::kTouch; }
 
 /// What is known of a path that was found.
 void addPath(JsonObject& json, const feasible::StepPath& path) {

@@ -38,7 +38,8 @@ std::int64_t timeOfAsking() {
 /// How the hands' parts push each other is worked out before the first stage that moves any, and counts to that.
 class StageTimes {
 public:
-    explicit StageTimes(std::span<const tick::Stage> stages) : stages_(stages), last_tick_(stages.size()) {}
+    StageTimes(std::span<const tick::Stage> stages, std::uint32_t cap)
+        : stages_(stages), last_tick_(stages.size()), work_cap_(cap) {}
 
     /// One tick of the loop's own walk; true if parts touched.
     bool step(tick::PressedRun& run, const DeviceReading& reading) {
@@ -57,6 +58,8 @@ public:
     const std::vector<std::int64_t>& all() const { return all_; }
     /// Of each tick that counts: the same in equal runs [units].
     const std::vector<std::uint32_t>& work() const { return work_; }
+    /// Of a tick; 0: nothing caps it [units].
+    std::uint32_t workCap() const { return work_cap_; }
 
 private:
     static void after(void* context, const tick::Stage& stage) noexcept {
@@ -69,7 +72,7 @@ private:
 
     std::span<const tick::Stage> stages_;
     std::vector<std::int64_t> last_tick_, all_;
-    std::uint32_t last_work_ = 0;
+    std::uint32_t work_cap_, last_work_ = 0;
     std::vector<std::uint32_t> work_;
     std::int64_t last_ = 0, asking_ = timeOfAsking();
 };
@@ -78,7 +81,7 @@ private:
 StageTimes timesOfRun(const scene::Scene& scene, std::span<const tick::Stage> stages, bool contact) {
     constexpr int kApproachTicks = tick::PressedRun::kApproachTicks;
     tick::PressedRun run(scene);
-    StageTimes times(stages);
+    StageTimes times(stages, run.mostWork());
     int counted = 0;
     for (int i = 0; i < kApproachTicks + kMostTicks && counted < TickCost::kWantedTicks; ++i) {
         const bool touches = times.step(run, run.readingAt(i));
@@ -93,11 +96,12 @@ StageTimes timesOfRun(const scene::Scene& scene, std::span<const tick::Stage> st
 struct RunTimes {
     std::vector<std::int64_t> least;  // time by time
     std::vector<std::uint32_t> work;
+    std::uint32_t work_cap;
 };
 
 RunTimes leastTimes(const scene::Scene& scene, std::span<const tick::Stage> stages, bool contact) {
     const StageTimes first = timesOfRun(scene, stages, contact);
-    RunTimes times{first.all(), first.work()};
+    RunTimes times{first.all(), first.work(), first.workCap()};
     std::vector<std::int64_t>& least = times.least;
     for (int run = 1; run < TickCost::kRuns && !least.empty(); ++run) {
         const StageTimes next = timesOfRun(scene, stages, contact);
@@ -192,7 +196,7 @@ TickCost measureTick(const scene::Scene& scene) {
         cost.stages.push_back(
             {stages[s].name, stages[s].reason, quantileOf(of_stage, 0.5), quantileOf(std::move(of_stage), 0.99)});
     }
-    cost.work_cap = tick::PressedRun(scene).mostWork();
+    cost.work_cap = runs.work_cap;
     if (cost.work_cap > 0 && ticks > 0) {
         cost.most_work = *std::max_element(runs.work.begin(), runs.work.end());
         cost.at_cap_us = timeAt(cost.work_cap, whole, runs.work);

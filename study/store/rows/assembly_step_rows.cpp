@@ -27,8 +27,7 @@ std::vector<session::StepEnd> readAssemblySteps(const Database& database, std::i
     Statement row = database.prepare(
         "SELECT name, part, picked_ms, done_ms, place, picks, drops, order_errors, undos, hands, held_ms, path_m, "
         "peak_force_N, position_error_m, angle_error_rad, free_path_m, hints FROM assembly_step WHERE attempt_id=? "
-        "ORDER BY "
-        "step");
+        "ORDER BY step");
     row.bind(attempt_id);
     while (row.step())
         steps.push_back({row.text(0),
