@@ -123,9 +123,6 @@ std::size_t sense(const HandModel& model, TickState& whole, std::size_t hand, co
     return next;
 }
 
-// Of what stretched springs add to the metric's square, and of what is rounded there
-constexpr double kPulledRoom = 1.3, kPulledTooMuch = 2.0, kRoundingOfSquare = 1e-9;
-
 /// Where a hand that is at `X_WH` draws a part that goes on moving, its spring at rest at `X_WR`.
 Pose drawOn(const HandInTick& hand, const Pose& X_WH, const Pose& X_WR, bool relocated) noexcept {
     const HandModel& model = *hand.model;
@@ -139,6 +136,9 @@ Pose drawOn(const HandInTick& hand, const Pose& X_WH, const Pose& X_WR, bool rel
     state.pull.springs[0].X_WT = drawnTo(model, state, state.p_GC, X_WR, X_WG);
     return state.pull.restFrom(state.metric, X_WG);
 }
+
+// Of what stretched springs add to the metric's square, and of what is rounded there
+constexpr double kPulledRoom = 1.3, kPulledTooMuch = 2.0, kRoundingOfSquare = 1e-9;
 
 /// Two hands' springs on one part, and where it would rest. The first one's state takes them.
 void drawTogether(const HandInTick& first, const Pose& X_WH, const HandState& second,
