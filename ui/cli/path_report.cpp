@@ -87,6 +87,7 @@ void printKeys(const GeometryGroup& group) {
 
 std::string pathsJson(const std::vector<GeometryGroup>& groups) {
     std::vector<std::string> geometries;
+    geometries.reserve(groups.size());
     for (const GeometryGroup& group : groups) geometries.push_back("\n" + groupJson(group));
     return JsonObject().json("geometries", jsonList(geometries)).str() + "\n";
 }

@@ -288,8 +288,8 @@ TEST(Inertia, WithoutAnObstacleTheFreePartIsAMassToo) {
     auto spec = boxOverPlate(kClosedForm);
     spec.parts.resize(1);
     test::Bench bench(spec);
-    std::vector<double> hand;
-    for (int i = 0; i < 500; ++i) hand.push_back(0.01 * std::sin(30.0 * i * T));
+    std::vector<double> hand(500);
+    for (std::size_t i = 0; i < hand.size(); ++i) hand[i] = 0.01 * std::sin(30.0 * static_cast<double>(i) * T);
     const std::vector<double> want = massBehind(hand, kMass, kStiffness, kDamping);
     for (std::size_t i = 0; i < hand.size(); ++i) {
         Pose X = spec.parts[0].X_WP;
