@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 
 #include "study/run/files/wall_clock.h"
+#include "study/store/transfer/pull.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 
 namespace passung::cli {
 
 int restore(const RestoreArguments& options) {
-    const auto report = store::restoreDatabase(options.database, options.from, run::openOptionsNow());
+    const auto report =
+        store::restoreDatabase(options.database, options.from, run::openOptionsNow(), store::pullSessions);
     if (!report) return fail(report.errors());
     for (const std::string& healed : report->healed) fmt::print("{}: {}: healed\n", options.database, healed);
     const std::string none = report->anew ? "" : ": there is no intact copy of it in " + options.from;

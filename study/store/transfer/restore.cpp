@@ -22,7 +22,6 @@
 #include "study/store/transfer/heal.h"
 #include "study/store/transfer/heal_links.h"
 #include "study/store/transfer/merge.h"
-#include "study/store/transfer/pull.h"
 
 namespace passung::store {
 namespace {
@@ -31,8 +30,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFrom = "source";
 constexpr const char* kOfTheFile = "the file: ";  // how verify begins such a line
-
-bool isServer(const std::string& from) { return from.starts_with("postgresql://") || from.starts_with("postgres://"); }
 
 /// A private copy of this program's schema, so that the source stays as it is.
 void copySource(const std::string& from, const std::string& to, const std::string& now_utc) {
@@ -222,7 +219,7 @@ void putInPlace(const std::string& path, const Workshop& workshop, RestoreReport
 
 /// Works on copies; the database changes at the end, if anything was healed.
 RestoreReport restoreIn(const Workshop& workshop, const std::string& path, const std::string& from,
-                        const OpenOptions& options) {
+                        const OpenOptions& options, const PullSessions& pull) {
     RestoreReport report;
     const bool sound = copyDamaged(path, workshop.part, options.now_utc, report.healed);
     if (fs::exists(path + "-wal")) throw std::runtime_error("another program has this database open; end it first");
@@ -236,7 +233,7 @@ RestoreReport restoreIn(const Workshop& workshop, const std::string& path, const
         throw std::runtime_error("its pages are damaged: only a backup or another database can replace it");
     }
     if (isServer(from))
-        pullSessions(from, workshop.part, workshop.source, options.now_utc);
+        pull(from, workshop.part, workshop.source, options.now_utc);
     else
         copySource(from, workshop.source, options.now_utc);
     if (sound) {
@@ -256,8 +253,10 @@ RestoreReport restoreIn(const Workshop& workshop, const std::string& path, const
 
 }  // namespace
 
-Result<RestoreReport> restoreDatabase(const std::string& database, const std::string& from,
-                                      const OpenOptions& options) {
+bool isServer(const std::string& from) { return from.starts_with("postgresql://") || from.starts_with("postgres://"); }
+
+Result<RestoreReport> restoreDatabase(const std::string& database, const std::string& from, const OpenOptions& options,
+                                      const PullSessions& pull) {
     const std::string path = behindLink(database);
     if (const auto why = whyNoRegularFile(path)) return Error{.message = *why, .file = path};
     if (!fs::exists(path)) return Error{.message = "no such file", .file = path};
@@ -265,7 +264,7 @@ Result<RestoreReport> restoreDatabase(const std::string& database, const std::st
     const auto lock = ProcessLock::take(path);
     if (!lock) return lock.errors();
     const Workshop workshop(path);
-    auto restored = guarded(path, [&] { return restoreIn(workshop, path, from, options); });
+    auto restored = guarded(path, [&] { return restoreIn(workshop, path, from, options, pull); });
     const auto name = [&](std::string& text) { text = withKnownNames(text, workshop, path, from); };
     if (!restored) {
         Errors errors = restored.errors();

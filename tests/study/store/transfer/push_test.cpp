@@ -8,6 +8,7 @@
 #include "study/store/people/participant_records.h"
 #include "study/store/schema/person_identity.h"
 #include "study/store/schema/sqlite.h"
+#include "study/store/transfer/pull.h"
 #include "study/store/transfer/restore.h"
 #include "tests/study/store/damaged_study.h"
 #include "tests/study/store/postgres.h"
@@ -434,7 +435,7 @@ TEST_F(Push, AFileIsHealedFromThere) {
             "UPDATE sample_chunk SET data=zeroblob(length(data)) WHERE stream_id=1 AND chunk_no=0; UPDATE "
             "attempt_measure SET value_num=2 WHERE attempt_id=4 AND measure='peak_force_N'; UPDATE condition SET "
             "levels_json='{}' WHERE position=1");
-    const RestoreReport report = require(restoreDatabase(path, server_->uri(), fake::options()));
+    const RestoreReport report = require(restoreDatabase(path, server_->uri(), fake::options(), pullSessions));
     EXPECT_EQ(report.remaining, std::vector<std::string>{});
     EXPECT_EQ(report.healed.size(), 3u) << testing::PrintToString(report.healed);
     EXPECT_TRUE(fake::dump(path) == whole);
