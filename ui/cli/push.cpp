@@ -1,4 +1,4 @@
-#include "study/store/transfer/push.h"
+#include "study/store/postgres/push.h"
 
 #include <fmt/format.h>
 

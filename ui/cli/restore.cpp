@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "study/run/files/wall_clock.h"
-#include "study/store/transfer/pull.h"
+#include "study/store/postgres/pull.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 

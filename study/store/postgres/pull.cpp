@@ -1,4 +1,4 @@
-#include "study/store/transfer/pull.h"
+#include "study/store/postgres/pull.h"
 
 #include <cstdlib>
 #include <map>
@@ -6,9 +6,9 @@
 #include <pqxx/pqxx>
 #include <stdexcept>
 
+#include "study/store/postgres/postgres_message.h"
 #include "study/store/schema/revisions.h"
 #include "study/store/schema/row_hash.h"
-#include "study/store/transfer/postgres_message.h"
 
 namespace passung::store {
 namespace {

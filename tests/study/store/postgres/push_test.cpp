@@ -1,4 +1,4 @@
-#include "study/store/transfer/push.h"
+#include "study/store/postgres/push.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "study/store/people/participant_records.h"
+#include "study/store/postgres/pull.h"
 #include "study/store/schema/person_identity.h"
 #include "study/store/schema/sqlite.h"
-#include "study/store/transfer/pull.h"
 #include "study/store/transfer/restore.h"
 #include "tests/study/store/damaged_study.h"
 #include "tests/study/store/postgres.h"

@@ -1,4 +1,4 @@
-#include "study/store/transfer/push.h"
+#include "study/store/postgres/push.h"
 
 #include <fmt/format.h>
 
@@ -11,6 +11,8 @@
 #include <set>
 
 #include "core/base/digest.h"
+#include "study/store/postgres/postgres_message.h"
+#include "study/store/postgres/push_copies.h"
 #include "study/store/read/session_damage.h"
 #include "study/store/rows/audit.h"
 #include "study/store/rows/tombstone.h"
@@ -18,8 +20,6 @@
 #include "study/store/schema/person_identity.h"
 #include "study/store/schema/row_hash.h"
 #include "study/store/schema/session_tables.h"
-#include "study/store/transfer/postgres_message.h"
-#include "study/store/transfer/push_copies.h"
 #include "study/store/transfer/same_study.h"
 
 namespace passung::store {

@@ -1,4 +1,4 @@
-#include "study/store/transfer/push_copies.h"
+#include "study/store/postgres/push_copies.h"
 
 #include <fmt/format.h>
 
