@@ -2,6 +2,7 @@
 
 #include "core/tick/numerics.h"
 #include "study/store/schema/sqlite.h"
+#include "tests/study/store/postgres.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
 
@@ -24,6 +25,23 @@ protected:
     }
     TempFolder folder_;
 };
+
+TEST_F(Damage, IsHealedByWhatWasPushedIntoAServer) {
+    // Truth: invariant: a server of its own holds what was pushed before the damage. Verify says that it is healed.
+    if (!fake::Postgres::installed()) GTEST_SKIP() << "no PostgreSQL server is installed";
+    const fake::Postgres server;
+    EXPECT_EQ(ends({"push", "s.db", "--to", server.uri()}, 0).out,
+              "s.db: 1 sessions added, 0 brought up to date, 0 known\n");
+    EXPECT_EQ(ends({"push", "s.db", "--to", server.uri()}, 0).out,
+              "s.db: 0 sessions added, 0 brought up to date, 1 known\n");
+    change("UPDATE attempt_measure SET value_num=9 WHERE attempt_id=3 AND measure='trial_time_s'");
+    ends({"verify", "s.db"}, 1);
+    ends({"push", "s.db", "--to", server.uri()}, 1);
+    EXPECT_EQ(linesOf(ends({"restore", "s.db", "--from", server.uri()}, 0).out).size(), 1u);
+    ends({"verify", "s.db"}, 0);
+    EXPECT_EQ(ends({"push", "s.db", "--to", "postgresql:///none?host=" + folder_.path().string()}, 1).err.find("s.db: "),
+              0u);
+}
 
 TEST_F(Damage, IsNamedExportedAroundAndHealed) {
     // Truth: invariant: one chunk and one measure are damaged; each command says so in a line and ends in 1, and after
