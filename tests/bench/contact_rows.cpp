@@ -14,7 +14,7 @@ namespace passung::bench {
 
 namespace {
 
-constexpr double kUm = 1e6, kPercent = 100.0, kDeg = 180.0 / std::numbers::pi;
+constexpr double kPercent = 100.0, kDeg = 180.0 / std::numbers::pi;
 
 /// Tolerance of the field and spacing of the shell [m], coarse to fine.
 struct Setting {

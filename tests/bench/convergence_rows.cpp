@@ -15,7 +15,6 @@ namespace passung::bench {
 
 namespace {
 
-constexpr double kUm = 1e6;
 constexpr double kRadius = 10e-3;   // of the ball
 constexpr double kBoxEdge = 20e-3;  // of the cube
 constexpr int kSamples = 20'000, kPoses = 400;

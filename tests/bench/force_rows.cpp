@@ -60,7 +60,7 @@ namespace passung::bench {
 
 namespace {
 
-constexpr double kUs = 1e6, kUm = 1e6, kOverlapMark = 0.01;
+constexpr double kUs = 1e6, kOverlapMark = 0.01;
 constexpr double kFineTolerance = 5e-6;
 constexpr const char* kFine = "5 um, both ways";
 constexpr std::int64_t kTicks = 12'000, kFewTicks = 3'000;

@@ -12,9 +12,9 @@ namespace passung::bench {
 
 namespace {
 
-constexpr double kTolerance = 50e-6;
-constexpr double kSpacing = 0.073e-3;   // gives a million points
-constexpr double kQuickSpacing = 1e-3;  // to see that it works
+constexpr double kMillionTolerance = 50e-6;
+constexpr double kMillionSpacing = 0.073e-3;  // gives a million points
+constexpr double kQuickSpacing = 1e-3;        // to see that it works
 constexpr double kShare = 0.01;
 constexpr double kMostShift = 3e-3;
 constexpr int kBisections = 24;
@@ -42,8 +42,8 @@ Result<std::vector<Row>> millionRows(const ContactScene& scene, const Extent& ex
     std::vector<Row> rows;
     if (!extent.wanted(kMillionGroup, kOnePercent) && !extent.wanted(kMillionGroup, "passung query")) return rows;
     PartStore bunny(scene.bunny), tool(scene.tool);
-    const double spacing = extent.few_settings ? kQuickSpacing : kSpacing;
-    const auto field = bunny.get(kTolerance, 0.0);
+    const double spacing = extent.few_settings ? kQuickSpacing : kMillionSpacing;
+    const auto field = bunny.get(kMillionTolerance, 0.0);
     const auto shell = tool.get(0.0, spacing);
     if (!field) return field.errors();
     if (!shell) return shell.errors();
@@ -53,7 +53,7 @@ Result<std::vector<Row>> millionRows(const ContactScene& scene, const Extent& ex
         scene.pressed.begin() + static_cast<std::ptrdiff_t>(std::min(kMostPoses, scene.pressed.size())));
     const double lever = 1.0;  // torque errors are not judged here
     if (extent.wanted(kMillionGroup, kOnePercent)) {
-        Candidate tick = ourTick(**field, **shell, kTolerance, spacing);
+        Candidate tick = ourTick(**field, **shell, kMillionTolerance, spacing);
         tick.name = kOnePercent;
         std::vector<TruePose> poses;
         for (const TruePose& pose : pressed) poses.push_back(withShare(*tick.method, pose, points));
@@ -62,7 +62,7 @@ Result<std::vector<Row>> millionRows(const ContactScene& scene, const Extent& ex
     }
     if (extent.wanted(kMillionGroup, "passung query")) {
         for (const int budget : {0, 3000, 1000, 300, 100}) {
-            Candidate query = ourQuery(**field, **shell, kTolerance, spacing,
+            Candidate query = ourQuery(**field, **shell, kMillionTolerance, spacing,
                                        {.area_stiffness = kAreaStiffness, .max_nodes = budget});
             if (budget > 0) query.settings += fmt::format(", budget {} nodes", budget);
             rows.push_back(measure(query, kMillionGroup, pressed, lever, extent.repetitions));

@@ -19,7 +19,6 @@ namespace passung::bench {
 
 namespace {
 
-constexpr double kUm = 1e6;
 constexpr double kBore = 10e-3, kPeg = 9.9e-3, kPlate = 40e-3, kHeight = 20e-3;
 constexpr double kReach = 0.2e-3;  // from the surface
 constexpr std::size_t kBorePoints = 60'000;

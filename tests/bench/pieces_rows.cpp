@@ -21,7 +21,6 @@ constexpr double kTolerance = 20e-6, kSpacing = 1e-3;
 constexpr double kSeconds = 0.5, kQuickSeconds = 0.01;  // that each piece runs at least
 constexpr double kNear = 1e-3;                          // of the surface, where errors are told [m]
 constexpr std::size_t kMostJudged = 3000;
-constexpr double kUm = 1e6;
 
 /// One thing to time. `run` does it once and says how many items that were: points, nodes, builds.
 struct Piece {

@@ -7,6 +7,8 @@
 
 namespace passung::bench {
 
+constexpr double kUm = 1e6;  // in a metre
+
 struct Times {
     double mean = kNotGiven, median = kNotGiven, p99 = kNotGiven, max = kNotGiven;
     double p999 = kNotGiven;  // p99, p99.9: nearest rank

@@ -30,7 +30,6 @@ constexpr int kBuilds = 3;
 constexpr double kFinerTolerance = 80e-6;
 /// Fields are compared so far from the surface. Interpolation there takes nodes a cell's diagonal farther: kBandCells.
 constexpr double kTestedCells = 2.0;
-constexpr double kUm = 1e6;
 
 /// Bits of a coordinate, two zeros between each.
 std::uint64_t spread(std::uint32_t v) {

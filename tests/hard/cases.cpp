@@ -19,7 +19,6 @@ namespace {
 
 using scene::SceneSpec;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Pose worldOf(const SceneSpec& spec) { return fixedPart(spec).X_WP; }
@@ -317,7 +316,6 @@ void coarser(SceneSpec& spec, std::uint64_t seed) {
     spec.contact.cell = 0.0;
 }
 
-constexpr unsigned kGods = 0b110;
 constexpr const char* kOverlap = "deepest overlap";
 constexpr const char* kRatio = "deepest overlap per the penalty's on the same path";
 constexpr const char* kCrossed = "poses in which FCL finds the sheet in the tool less the tolerance";

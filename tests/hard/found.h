@@ -75,6 +75,9 @@ std::vector<Found> foundOthers();
 /// short version. Errors: its scene cannot be read or built.
 Result<FoundMeasured> measureFound(const Found& found, scene::ContactMethod method, bool full, int runs);
 
+/// Of a scene's seed and that of its first path: seed 0 is that one.
+inline std::uint64_t pathSeed(std::uint64_t first, std::uint64_t seed) { return first + 100 * seed; }
+
 /// A scene file's shapes, led by `hand` from where the held part starts.
 Result<FoundScene> foundScene(const std::string& file, const std::function<Pose(const Pose& start, double t)>& hand);
 

@@ -9,9 +9,6 @@ namespace {
 
 using test::SurfaceCase;
 
-/// Of a scene's seed and that of its first path: seed 0 is that one.
-std::uint64_t pathSeed(std::uint64_t first, std::uint64_t seed) { return first + 100 * seed; }
-
 Result<FoundScene> from(const char* name, const SurfaceCase& made) {
     return meshScene(name, made.held, made.obstacle, made.hand);
 }
@@ -32,7 +29,7 @@ Result<FoundScene> scan(std::uint64_t seed) {
     return from(("scan" + std::to_string(mm)).c_str(), test::scanOnScan(1e-3 * mm, n, pathSeed(10, seed)));
 }
 
-Result<FoundScene> bar(std::uint64_t) { return from("bar", test::spinningBar()); }
+Result<FoundScene> meshBar(std::uint64_t) { return from("bar", test::spinningBar()); }
 Result<FoundScene> bolt(std::uint64_t seed) { return from("bolt", test::boltInNut(pathSeed(13, seed))); }
 
 /// A scan of which every twentieth triangle is missing, on one that is whole.
@@ -57,7 +54,7 @@ std::vector<Found> foundMeshes() {
         {.name = "gear_mesh", .make = of<gearInGear, 6>, .seconds = 0.7},
         {.name = "dovetail_mesh", .make = of<dovetail, 7>, .was = {.time = "both ways 24 % of ticks > 1 ms"}},
         {.name = "bar_mesh",
-         .make = bar,
+         .make = meshBar,
          .was = {.time = "both ways 80 % of ticks > 1 ms"},
          .seconds = 1.0,
          .full_seconds = 10.0,

@@ -17,8 +17,6 @@ Hand wander(const Vec3& drift, const Vec3& amplitude, double tilt, std::uint64_t
     return [=](const Pose& start, double t) { return test::RandomPath(start, drift, amplitude, tilt, seed)(t); };
 }
 
-std::uint64_t pathSeed(std::uint64_t first, std::uint64_t seed) { return first + 100 * seed; }
-
 Result<FoundScene> pin(std::uint64_t seed) {
     return foundScene("found_pin", wander({0, 0, -.003}, {.004, .004, .002}, 0.1, pathSeed(1, seed)));
 }
@@ -103,8 +101,6 @@ Result<FoundScene> h7g6(std::uint64_t seed) {
 Result<FoundScene> keyed(std::uint64_t seed) {
     return foundScene("found_keyed", insert({.001, .001, .004}, 0.03, pathSeed(19, seed)));
 }
-
-constexpr unsigned kGods = 0b110;
 
 /// A peg in a bore, drawn aside and tilted.
 Found tiltedPeg(const char* name, Result<FoundScene> (*make)(std::uint64_t), double most_axial, double most_us) {

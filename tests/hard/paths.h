@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "core/base/random.h"
 #include "tests/hard/run.h"
 
 namespace passung::hard {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A path from pose to pose, a reading a tick; all poses in the frame of `X_WO` until readings() puts them there.
 class Walk {

@@ -12,6 +12,8 @@
 
 namespace passung::hard {
 
+constexpr unsigned kGods = 0b110;  // both god objects, by ContactMethod
+
 /// A tick of a run as it is judged.
 struct Tick {
     Pose device, proxy;  // of the held part: X_WH, X_WG

@@ -19,7 +19,7 @@ namespace {
 
 using scene::SceneSpec;
 
-constexpr double kPi = std::numbers::pi, kDegree = kPi / 180.0;
+constexpr double kPi = std::numbers::pi;
 constexpr double kMostTurn = 0.5 * kDegree;  // of a force against its truth
 constexpr double kFloor = 0.05;              // of the largest force: below, errors count against that
 
@@ -489,7 +489,7 @@ Result<Measured> a12() {
 }  // namespace
 
 std::vector<Case> truthCases() {
-    constexpr unsigned kPenalty = 0b001, kGods = 0b110, kAll = 0b111;
+    constexpr unsigned kPenalty = 0b001, kAll = 0b111;
     constexpr const char *kForce = "error of the force, all poses", *kNoise = "force above 50 Hz";
     return {
         {"a1_submerged_body", "a1", kForce, "%", 1, 2, 2, 0.6, 0.6, a1Drive, a1, cubicThenAnywhere, kPenalty},
