@@ -62,7 +62,7 @@ private:
         for (const TableColumn& column : columns) {
             const bool condition = column.parent == "condition" && !id.empty();
             std::string name = work_.quote_name(condition ? "condition" : column.name);
-            if (column.type == "BLOB") name = "encode(" + name + ", 'hex')";
+            if (column.type == "BLOB") name.insert(0, "encode(").append(", 'hex')");
             there += (there.empty() ? "" : ", ") + name;
             here += (here.empty() ? "" : ", ") + column.name;
             values += values.empty() ? "" : ", ";

@@ -137,7 +137,7 @@ private:
             "'withdraw', 'readmit') AND hash NOT IN(SELECT hash FROM main.audit) AND code IN(SELECT participant_id "
             "FROM main.participant)");
         while (decided.step()) decided_there_.insert(decided.text(0));
-        const auto left_out = erasedPeople(database_, "temp", "main");
+        auto left_out = erasedPeople(database_, "temp", "main");
         for (const auto& [code, surrogate] : left_out) report.left_out.push_back(code);
         for (const Copy& copy : copies) database_.execute("DROP TABLE temp." + copy.name);
         leaveOut(database_, left_out);
@@ -205,7 +205,7 @@ private:
     void pushSession(const std::string& id, const std::string& name, const std::vector<Copy>& copies,
                      const std::vector<SessionTable>& tables, PushReport& report) {
         if (const SessionDamage damage = damageOf(database_, tables, "main", id); damage.any()) {
-            for (const std::string& line : damage.lines()) report.damaged.push_back(name + ", " + line);
+            for (const std::string& line : damage.lines()) report.damaged.push_back(fmt::format("{}, {}", name, line));
             return;
         }
         const std::string digest = sessionDigest(database_, tables, "main", id);

@@ -39,8 +39,8 @@ TEST_F(Damage, IsHealedByWhatWasPushedIntoAServer) {
     ends({"push", "s.db", "--to", server.uri()}, 1);
     EXPECT_EQ(linesOf(ends({"restore", "s.db", "--from", server.uri()}, 0).out).size(), 1u);
     ends({"verify", "s.db"}, 0);
-    EXPECT_EQ(ends({"push", "s.db", "--to", "postgresql:///none?host=" + folder_.path().string()}, 1).err.find("s.db: "),
-              0u);
+    EXPECT_EQ(
+        ends({"push", "s.db", "--to", "postgresql:///none?host=" + folder_.path().string()}, 1).err.find("s.db: "), 0u);
 }
 
 TEST_F(Damage, IsNamedExportedAroundAndHealed) {
