@@ -117,6 +117,7 @@ struct PushArguments {
     std::string database;
     std::string to;  // of PostgreSQL, as libpq reads it
 };
+/// Becomes the program passung-postgres; returns only if there is none.
 int push(const PushArguments& options);
 
 struct VerifyArguments {
