@@ -15,6 +15,11 @@ inline std::string textOf(const std::string& path) {
     return text.str();
 }
 
+/// Tables of a protocol by which each attempt counts, however slow the machine is: else a session of repeated attempts
+/// ends before its last trial.
+inline constexpr const char* kOnAnyMachine =
+    "\n[loop]\nmax_missed_share = 1\n[view]\nmax_picture_age_ms = 600000\nmin_pictures_per_s = 0\n";
+
 /// protocols/peg_in_hole with four of its conditions, without practice, with time enough for a hand that is slow and a
 /// machine that misses cycles and pictures; a trial that does not count is repeated. Its questionnaires as they are; no
 /// consent.
@@ -48,7 +53,7 @@ inline std::string fourTrials() {
     const std::size_t consent = text.find("# ---- What people agree to");
     if (consent == std::string::npos) throw std::runtime_error("protocols/peg_in_hole no longer asks for consent");
     text.erase(consent, text.find("# Without `measures") - consent);
-    return text + "\n[loop]\nmax_missed_share = 1\n[view]\nmax_picture_age_ms = 600000\nmin_pictures_per_s = 0\n";
+    return text + kOnAnyMachine;
 }
 
 /// A folder of studies with this one, and the questionnaires beside it. Returns the study's file.

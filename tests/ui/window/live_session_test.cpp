@@ -12,6 +12,7 @@
 #include "study/store/schema/sqlite.h"
 #include "tests/support/temp_folder.h"
 #include "tests/ui/window/asking_study.h"
+#include "tests/ui/window/four_trials.h"
 
 // The threads of a live session without windows and without Qt, so that ThreadSanitizer sees all of them: the session's
 // with its loop and its writer, and those that windows bring: items, drawing, sound, and a listener that stops.
@@ -146,9 +147,7 @@ private:
 };
 
 /// Every trial is heard, and a machine that misses cycles and pictures invalidates nothing.
-constexpr const char* kMore =
-    "\n[feedback]\ncues = [\"audio\"]\nmasking_noise = true\n[loop]\nmax_missed_share = 1\n"
-    "[view]\nmax_picture_age_ms = 600000\nmin_pictures_per_s = 0\n";
+const std::string kMore = std::string("\n[feedback]\ncues = [\"audio\"]\nmasking_noise = true\n") + test::kOnAnyMachine;
 
 std::int64_t countIn(const std::string& file, const std::string& from) {
     return store::Database(file, store::OpenMode::ReadOnly).integer("SELECT count(*) FROM " + from);

@@ -12,6 +12,7 @@
 #include "study/run/files/known_names.h"
 #include "study/store/read/store_reader.h"
 #include "tests/support/length.h"
+#include "tests/ui/window/four_trials.h"
 #include "tests/ui/window/windows.h"
 #include "ui/window/live_session.h"
 
@@ -91,7 +92,7 @@ protected:
         triangles_ = writeRing(protocols_ + "/ring/ring.off");
         std::string study = kStudy;
         study.replace(study.find("TIMEOUT"), 7, test::atFullLength() ? "6" : "2");
-        std::ofstream(protocols_ + "/ring/study.toml") << study;
+        std::ofstream(protocols_ + "/ring/study.toml") << study << kOnAnyMachine;
         warnings.clear();
     }
 

@@ -52,13 +52,13 @@ protected:
 private:
     /// The participant's window looks as the studies say.
     void dress(bool dark, double scale) {
-        const std::string view = std::string("\n[view]\ntheme = \"") + (dark ? "dark" : "light") +
+        const std::string view = std::string(kOnAnyMachine) + "theme = \"" + (dark ? "dark" : "light") +
                                  "\"\ntext_percent = " + std::to_string(std::lround(100 * scale)) + "\n";
         for (const auto& folder : std::filesystem::directory_iterator(protocols_)) {
             const std::string path = folder.path() / "study.toml";
             if (!std::filesystem::exists(path)) continue;
             std::string text = textOf(path);
-            writeFile(path, text.substr(0, text.find("\n[view]\n")) + view);
+            writeFile(path, text.substr(0, text.find(kOnAnyMachine)) + view);
         }
     }
 

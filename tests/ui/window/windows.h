@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <QtCore/QCoreApplication>
+#include <QtCore/QElapsedTimer>
+#include <QtCore/QThread>
 #include <QtGui/QGuiApplication>
 #include <QtGui/QImage>
 #include <QtQuick/QQuickItem>
@@ -10,6 +12,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <memory>
+#include <stdexcept>
+#include <string>
 
 #include "tests/support/temp_folder.h"
 #include "ui/window/app.h"
@@ -57,15 +61,32 @@ protected:
         EXPECT_TRUE(warnings.isEmpty()) << warnings.join("\n").toStdString();
     }
 
+    /// Throws if it takes minutes, so that what never happens ends this test and says so.
     template <class Condition>
     void waitFor(const Condition& condition) {
-        while (!condition()) QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 5);
+        constexpr int kLimit_ms = 300'000;
+        QElapsedTimer waiting;
+        waiting.start();
+        while (!condition()) {
+            if (waiting.hasExpired(kLimit_ms)) throw std::runtime_error("waited for minutes while " + whereItIs());
+            QCoreApplication::processEvents(QEventLoop::AllEvents, 5);
+            QThread::msleep(1);  // of processor time others have use
+        }
     }
 
     template <class State>
     void waitFor() {
-        waitFor([&] { return run().view().is<State, presenter::state::Failed>(); });
-        ASSERT_TRUE(run().view().is<State>()) << run().view().failure();
+        waitFor([&] { return run().view().is<State>() || run().view().isOver(); });
+        ASSERT_TRUE(run().view().is<State>()) << whereItIs();
+    }
+
+    /// What the session is at, for who has waited in vain.
+    std::string whereItIs() const {
+        const presenter::RunView& view = run().view();
+        return "the session was in state " + std::to_string(view.state.index()) + " at " +
+               std::to_string(view.trial_s) + " s of trial " + std::to_string(view.number) + " of " +
+               std::to_string(view.planned) + (app_->experimenter()->isActive() ? ", console active" : "") +
+               (app_->participant()->isActive() ? ", participant's window active" : "") + "; " + view.failure();
     }
 
     const presenter::Run& run() const { return app_->desk().run(); }
@@ -110,8 +131,14 @@ protected:
     }
 
     void activate(QQuickWindow* window) {
-        window->requestActivate();
-        waitFor([&] { return window->isExposed() && window->isActive(); });
+        // Asks again: a window that comes up meanwhile takes the focus.
+        const auto isReady = [&] { return window->isExposed() && window->isActive(); };
+        while (!isReady()) {
+            window->requestActivate();
+            QElapsedTimer waiting;
+            waiting.start();
+            waitFor([&] { return isReady() || waiting.hasExpired(2000); });
+        }
     }
 
     void type(const char* into, const char* text) {
