@@ -106,6 +106,12 @@ ContactRow rowBetween(const HullPair& pair, const Placement& X0, const Placement
     return row;
 }
 
+bool isOverItsFace(const ContactRow& row, const HullPair& pair, const Placement& X) noexcept {
+    if (!row.fixed) return true;
+    if (!row.on_held) return liesOver(pair.obstacle, pair.of_obstacle, X * row.p_held, pair.of_obstacle.normal);
+    return liesOver(pair.held, pair.of_held, X.R.transpose() * (row.p_obstacle - X.p), pair.of_held.normal);
+}
+
 bool refresh(ContactRow& row, const HullPair& pair, const Placement& X) noexcept {
     row.bend = 0.0;
     if (!row.fixed) {

@@ -424,9 +424,12 @@ HullPair SurfaceProxy::hulls(const ContactRow& row) const noexcept {
     return {*held_, tree, (*held_)[row.held], tree[row.obstacle]};
 }
 
-/// True if a row's faces are far from each other at a pose at which their planes are not: it is one beyond their ends.
+/// True if a row's faces are far from each other at a pose at which their planes are not, or what it holds is not over
+/// its face: it is one beyond their ends.
 bool SurfaceProxy::isGhost(const ContactRow& row, const Placement& X) noexcept {
     const HullPair pair = hulls(row);
+    ++tick_.work;
+    if (!isOverItsFace(row, pair, X)) return true;
     const double far = 1.5 * std::max(row.gapAt(X), gap_) + kLeastGap;
     const NearestHulls there = nearestHulls(pair, X, row.n, far, far);
     tick_.work += 5 * there.looks;

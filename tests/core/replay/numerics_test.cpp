@@ -19,7 +19,7 @@ namespace passung {
 namespace {
 
 /// The number to which the hashes below belong.
-constexpr int kHashedNumerics = 9;
+constexpr int kHashedNumerics = 10;
 
 /// The mathematics library's own bits, which differ between its versions and between processors. Where they do, these
 /// hashes say nothing.
@@ -51,22 +51,22 @@ constexpr std::uint64_t kEveryEffect = 0xf95259786173db2bu;
 constexpr std::uint64_t kClosedForm = 0x9a6ccf5c5185c6cfu;
 
 /// On surfaces, without the low-pass that they do not have.
-constexpr std::uint64_t kSurface = 0x819a7aeb2de9f838u;
+constexpr std::uint64_t kSurface = 0x489a52dd57f924a5u;
 
 /// The same with weight.
-constexpr std::uint64_t kWeight = 0x3be8ace262a36b3fu;
+constexpr std::uint64_t kWeight = 0x35c4ddf2c276e036u;
 
 /// The same with navigation, whose buttons are held now and then.
-constexpr std::uint64_t kNavigation = 0x1210f7c4ccd5dadcu;
+constexpr std::uint64_t kNavigation = 0x0117431834b1a174u;
 
 /// The same with viscosity and a guide.
-constexpr std::uint64_t kGuidance = 0x6e432e1f9b55594eu;
+constexpr std::uint64_t kGuidance = 0x5c5b71041bdfcb22u;
 
 /// The same with a place that draws the part.
-constexpr std::uint64_t kSnap = 0xa448e8ff80ab833du;
+constexpr std::uint64_t kSnap = 0x9550a90efaf2d03cu;
 
 /// The same with inertia.
-constexpr std::uint64_t kInertia = 0x17375e9b9db688e0u;
+constexpr std::uint64_t kInertia = 0xc1a61efe560cf1a1u;
 
 constexpr const char* kParts = R"(
 [[part]]

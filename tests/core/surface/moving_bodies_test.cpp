@@ -139,11 +139,13 @@ struct Seen {
     int held = 0, of_other = 0;  // ticks under a row, and under one of a part that is moved by another hand
     int suspended = 0, longest = 0, stuck = 0, meets = 0;
     int most_work = 0;
-    double least = 1.0;  // exact distance of those that were measured [m]
-    double lag = 0.0;    // of the last tick, when the hands have long gone apart [m]
+    double least = 1.0;     // exact distance of those that were measured [m]
+    double lag = 0.0;       // of the last tick, when the hands have long gone apart, of parts that do not hang [m]
+    double way_left = 0.0;  // that parts that do hang could go still [m]
 };
 
-constexpr int kAnyBudget = 0;  // another one in each tick
+constexpr int kAnyBudget = 0;    // another one in each tick
+constexpr double kHangs = 1e-3;  // behind the hand: a part that something holds [m]
 
 /// Parts among what rests, each by a proxy of its own that has the others as bodies; they move by turns, in an order
 /// that changes from tick to tick, and now and then one of them leaves out its turn.
@@ -193,9 +195,16 @@ public:
                     if (k != i) proxies_[k]->moveBody(i, proxy.pose());
                 run_[i] = now.suspended ? run_[i] + 1 : 0;
                 seen_.longest = std::max(seen_.longest, run_[i]);
-                if (tick == ticks - 1) seen_.lag = std::max(seen_.lag, (proxy.pose().p - X_WH.p).norm());
             }
             if (at_once_) judgeAtOnce(begin);
+        }
+        for (std::size_t i = 0; i < parts_.size(); ++i) {
+            const Pose X_WH = parts_[i].hand(1e-3 * (ticks - 1));
+            const double lag = (proxies_[i]->pose().p - X_WH.p).norm();
+            if (lag < kHangs)
+                seen_.lag = std::max(seen_.lag, lag);
+            else
+                seen_.way_left = std::max(seen_.way_left, wayLeft(i, X_WH));
         }
         return seen_;
     }
@@ -211,6 +220,41 @@ private:
                 limit = std::min(limit, between_[pair].distance(a == i ? X_ba : X_ba.inverse(), limit));
             }
         return std::min(limit, around_[i].distance(X, limit));
+    }
+
+    /// How far part `i` comes nearer to its hand by motions at random that no triangle is in the way of, ever shorter
+    /// ones [m]: next to nothing if it hangs on another part, as a ring on an angle.
+    double wayLeft(std::size_t i, const Pose& X_WH) {
+        constexpr double kRadius = .02, kShortest = 2e-6;  // [m]
+        constexpr int kInVain = 400;
+        const auto energy = [&](const Pose& X) {
+            return (X_WH.p - X.p).squaredNorm() +
+                   kRadius * kRadius * rotationVector(X_WH.q * X.q.conjugate()).squaredNorm();
+        };
+        const auto isFree = [&](const Pose& from, const Pose& to) {
+            for (int k = 1; k <= 10; ++k) {
+                const double t = 0.1 * k;
+                if (distance(i, {from.q.slerp(t, to.q), from.p + t * (to.p - from.p)}, 1e-7) == 0.0) return false;
+            }
+            return true;
+        };
+        Random random(5);
+        Pose X = proxies_[i]->pose();
+        int in_vain = 0;
+        for (double length = 5e-4; length > kShortest;) {
+            Vec3 way, turn;
+            for (int k = 0; k < 3; ++k) {
+                way[k] = random.uniform(-length, length);
+                turn[k] = random.uniform(-length, length) / kRadius;
+            }
+            const Pose to{(rotationFromVector(turn) * X.q).normalized(), X.p + way};
+            if (energy(to) < energy(X) && isFree(X, to)) {
+                X = to;
+            } else if (++in_vain % kInVain == 0) {
+                length *= 0.8;
+            }
+        }
+        return (X.p - proxies_[i]->pose().p).norm();
     }
 
     void judgeAtOnce(const std::vector<Pose>& begin) {
@@ -282,6 +326,12 @@ void expectSafe(const char* name, std::uint64_t seed, const Seen& seen) {
     EXPECT_EQ(seen.meets, 0) << seed;
 }
 
+/// The hands have gone apart: each part is at its own, or hangs on another one.
+void expectAtTheHand(const Seen& seen) {
+    EXPECT_LT(seen.lag, 1e-5);
+    EXPECT_LT(seen.way_left, 5e-5);
+}
+
 struct PairOfParts {
     const char* name;
     TriangleMesh (*a)();
@@ -312,7 +362,7 @@ TEST_P(MovedInTurns, PartsInTwoHandsNeverMeet) {
         expectSafe(GetParam().name, seed, seen);
         EXPECT_GT(seen.of_other, 50) << "the hands press the parts against each other";
         EXPECT_LE(seen.suspended, kMostSuspended[seed % kSpeeds.size()]) << seed;
-        EXPECT_LT(seen.lag, 1e-5) << "the hands have gone apart";
+        expectAtTheHand(seen);
     }
 }
 
@@ -323,7 +373,7 @@ TEST_P(MovedInTurns, NeitherDoTheyOnTheWayThatBothGoAtOnce) {
         expectSafe(GetParam().name, seed, seen);
         EXPECT_GT(seen.of_other, 50) << "the hands press the parts against each other";
         EXPECT_LE(seen.suspended, kMost[seed % kSpeeds.size()]) << seed;
-        EXPECT_LT(seen.lag, 1e-5) << "the hands have gone apart";
+        expectAtTheHand(seen);
     }
 }
 
@@ -356,7 +406,7 @@ TEST(MovingBodies, OfFourHandsNeverMeet) {
         const Seen seen = InTurns(parts, still, 38000).run(400, 10);
         expectSafe("four hands", 11, seen);
         EXPECT_GT(seen.of_other, 200);
-        EXPECT_LT(seen.lag, 1e-5);
+        expectAtTheHand(seen);
     }
 }
 
@@ -374,13 +424,13 @@ TEST(MovingBodies, AnyBudgetKeepsThemApart) {
 
 TEST(MovingBodies, OnWaysThatAllGoAtOnceWaitForNobodyForLong) {
     // Truth: as above, and invariant: whatever the budget and the turns, a part comes to where its hand is when the
-    // hands have gone apart.
+    // hands have gone apart, unless it hangs: trying motions at random, triangle by triangle, finds none then.
     for (const int budget : {1000, 38000, kAnyBudget})
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
             const Seen seen = scene({"torus on angle", torus, angle}, seed, .3, budget).atOnce().run(300, 10);
             expectSafe("at once", seed, seen);
             EXPECT_GT(seen.of_other, 20);
-            EXPECT_LT(seen.lag, 1e-5);
+            expectAtTheHand(seen);
         }
 }
 

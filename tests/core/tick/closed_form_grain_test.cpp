@@ -33,6 +33,12 @@ void print(const std::string& what, const Seen& seen) {
     std::fflush(stdout);
 }
 
+Seen follow(Judge& judge, const Pair& pair, const Kind& kind, std::uint64_t seed, int ticks) {
+    const Hand hand(pair, kind, seed);
+    return judge.follow([&](int i) { return hand.at(1e-3 * i); }, ticks, kind.name + ", seed " + std::to_string(seed),
+                        ContactMethod::GodObject);
+}
+
 class PathsOver : public testing::TestWithParam<Pair> {};
 
 TEST_P(PathsOver, AreFollowedAsTheLeastEnergySays) {
@@ -41,12 +47,12 @@ TEST_P(PathsOver, AreFollowedAsTheLeastEnergySays) {
     const Pair& pair = GetParam();
     const bool round = pair.name.find("peg in") == 0;
     const int paths = all() ? (pair.kinds.size() == 5 ? 34 : 80) : 1;
-    Judge judge(pair);
+    Judge judge(judgedOf(pair));
     for (const Kind& kind : pair.kinds) {
         Seen seen;
         const auto first = static_cast<std::uint64_t>(100 + 1000 * (&kind - pair.kinds.data()));
         for (int i = 0; i < paths; ++i)
-            seen.add(judge.follow(kind, first + static_cast<std::uint64_t>(i), all() || !round ? 1200 : 600));
+            seen.add(follow(judge, pair, kind, first + static_cast<std::uint64_t>(i), all() || !round ? 1200 : 600));
         print(pair.name + ", " + kind.name, seen);
         EXPECT_LE(seen.bore, kForce) << seen.worst;
         EXPECT_LE(seen.step_bore, kForce);
@@ -87,8 +93,9 @@ TEST(ClosedFormGrain, PathsAlongWhichItWasWrongAreFollowed) {
     const auto known = pairs();
     for (const Found& found : all_found) {
         SCOPED_TRACE(found.what);
-        Judge judge(known[found.pair]);
-        const Seen seen = judge.follow(known[found.pair].kinds[found.kind], found.seed, 1200);
+        const Pair& pair = known[found.pair];
+        Judge judge(judgedOf(pair));
+        const Seen seen = follow(judge, pair, pair.kinds[found.kind], found.seed, 1200);
         print(found.what, seen);
         EXPECT_EQ(seen.off, 0) << seen.worst;
         EXPECT_EQ(seen.lagging, 0);
@@ -139,7 +146,7 @@ TEST(ClosedFormGrain, ATipOnTheMouthsEdgeIsHeldAcrossBothEdgesAlone) {
             EXPECT_NEAR((out.F_D_B.force - Vec3(0.252, 0.089, 2.209)).norm(), 0.0, 1e-3);
         }
     }
-    Judge judge(known[0]);
+    Judge judge(judgedOf(known[0]));
     const Seen seen = judge.follow([&](int i) { return path.at(i); }, static_cast<int>(path.lastTick()),
                                    "edge crossing", ContactMethod::GodObject);
     print("edge crossing", seen);

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -152,37 +154,47 @@ inline scene::SceneSpec sceneOf(const Pair& pair, const Pose& start, scene::Cont
     return spec;
 }
 
+/// What a path is judged by.
+struct Judged {
+    std::unique_ptr<truth::Separation> separation;
+    std::function<scene::SceneSpec(const Pose& start, scene::ContactMethod method)> scene;
+    std::function<double(const Pose&)> overlap;                // [m]
+    double bore = 0.0;                                         // as in Pair
+    double force = kForce;                                     // that a tick may differ by [N]
+    std::function<void(double gap)> keep_gap = [](double) {};  // of the reference, told before each tick's [m]
+};
+
+inline Judged judgedOf(const Pair& pair) {
+    std::vector<std::pair<hard::DenseBody, Pose>> fixed;
+    for (const auto& [shape, X] : pair.obstacles) fixed.emplace_back(hard::denseBody(shape, 1e-3), X);
+    const auto dense = std::make_shared<hard::DenseDistance>(hard::denseBody(pair.held, 1e-3), std::move(fixed));
+    return {truth::separationOf(pair.held, pair.obstacles),
+            [pair](const Pose& start, scene::ContactMethod method) { return sceneOf(pair, start, method); },
+            [dense](const Pose& X) { return -dense->least(X, 0.0); }, pair.bore};
+}
+
 /// Follows one path.
 class Judge {
 public:
-    explicit Judge(const Pair& pair) : pair_(pair), separation_(truth::separationOf(pair.held, pair.obstacles)) {
-        std::vector<std::pair<hard::DenseBody, Pose>> fixed;
-        for (const auto& [shape, X] : pair.obstacles) fixed.emplace_back(hard::denseBody(shape, 1e-3), X);
-        dense_ = std::make_unique<hard::DenseDistance>(hard::denseBody(pair.held, 1e-3), std::move(fixed));
-    }
-
-    Seen follow(const Kind& kind, std::uint64_t seed, int ticks,
-                scene::ContactMethod method = scene::ContactMethod::GodObject) {
-        const Hand hand(pair_, kind, seed);
-        return follow([&](int i) { return hand.at(1e-3 * i); }, ticks, kind.name + ", seed " + std::to_string(seed),
-                      method);
-    }
+    explicit Judge(Judged judged) : judged_(std::move(judged)) {}
 
     template <class Path>
     Seen follow(const Path& path, int ticks, const std::string& name, scene::ContactMethod method) {
-        test::Bench bench(sceneOf(pair_, path(0), method));
+        test::Bench bench(judged_.scene(path(0), method));
         Seen seen;
         Pose last = path(0);
         bool compares = false;  // the tick before is one to step from
+        std::optional<Pose> truth_last;
         int lagging = 3, still = 0;
         for (int i = 0; i < ticks; ++i) {
             const Pose X_WH = path(i), X_last = last;
             const tick::TickOutput out = bench.step(X_WH);
             ++seen.ticks;
-            if (i % kEvery == 0) seen.overlap = std::max(seen.overlap, -dense_->least(out.X_WG, 0.0));
+            if (i % kEvery == 0) seen.overlap = std::max(seen.overlap, judged_.overlap(out.X_WG));
             const bool lagged = lagging == 0;
             lagging = (out.frame.status & kIterationLimit) != 0 ? 0 : std::min(lagging + 1, 3);
-            const auto truth = truth::leastEnergyFrom(*separation_, rho_, X_last, X_WH);
+            judged_.keep_gap(out.frame.proxy_gap);
+            const auto truth = truth::leastEnergyFrom(*judged_.separation, rho_, X_last, X_WH);
             last = out.X_WG;
             const bool snaps = truth && truth->way > kSnap;
             // A snap may take two ticks: its looks are short, so that its way is free.
@@ -191,13 +203,16 @@ public:
             if (snaps) ++seen.snaps;
             if (!truth || snaps || lagging < 3) {
                 compares = false;
+                truth_last.reset();
                 still = 0;
                 continue;
             }
             judge(path, i, X_last, out, *truth, compares, name, seen);
             compares = true;
             const double moved = truth::pullTo(X_last, out.X_WG, rho_).norm();
-            const bool asked = i > 0 && truth::pullTo(path(i - 1), X_WH, rho_).norm() > kMoves && truth->way > kMoves;
+            const bool asked = truth_last && truth::pullTo(path(i - 1), X_WH, rho_).norm() > kMoves &&
+                               truth::pullTo(*truth_last, truth->X, rho_).norm() > kMoves;
+            truth_last = truth->X;
             still = asked && moved < kStill ? still + 1 : 0;
             if (still == 3) ++seen.catches;
             seen.longest = std::max(seen.longest, still);
@@ -213,7 +228,7 @@ private:
         const Vec3 force = kStiffness * (out.X_WG.p - X_WH.p), meant = kStiffness * (truth.X.p - X_WH.p);
         const double error = (force - meant).norm();
         const double above = 0.5 * truth::pullTo(out.X_WG, X_WH, rho_).squaredNorm() - truth.energy;
-        const bool in_bore = pair_.bore > 0.0 && out.X_WG.p.z() < -pair_.bore && X_WH.p.z() < -pair_.bore;
+        const bool in_bore = judged_.bore > 0.0 && out.X_WG.p.z() < -judged_.bore && X_WH.p.z() < -judged_.bore;
         ++seen.judged;
         seen.energy = std::max(seen.energy, above);
         if (in_bore) {
@@ -221,7 +236,7 @@ private:
             seen.bore = std::max(seen.bore, error);
             seen.most_looks_bore = std::max(seen.most_looks_bore, static_cast<double>(out.frame.iterations));
         }
-        if (error > kForce) ++(above <= 0.0 ? seen.lower : seen.off);
+        if (error > judged_.force) ++(above <= 0.0 ? seen.lower : seen.off);
         if (above > 0.0 && error > seen.elsewhere) {
             seen.elsewhere = error;
             seen.worst = name + ", tick " + std::to_string(i);
@@ -229,15 +244,13 @@ private:
         if (!compares || i == 0) return;
         const Vec3 before = kStiffness * (X_last.p - path(i - 1).p);
         const double beyond = (force - before).norm() - (meant - before).norm();
-        if (above <= 0.0 && error > kForce) return;  // another minimum
+        if (above <= 0.0 && error > judged_.force) return;  // another minimum
         seen.step = std::max(seen.step, beyond);
         if (in_bore) seen.step_bore = std::max(seen.step_bore, beyond);
         if (beyond > 0.1) ++seen.steps;
     }
 
-    Pair pair_;
-    std::unique_ptr<truth::Separation> separation_;
-    std::unique_ptr<hard::DenseDistance> dense_;
+    Judged judged_;
     double rho_ = std::sqrt(kRotationalStiffness / kStiffness);
 };
 

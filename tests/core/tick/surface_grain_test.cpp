@@ -1,0 +1,107 @@
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "tests/core/tick/grain.h"
+#include "tests/support/length.h"
+#include "tests/support/mesh_crossing.h"
+#include "tests/support/mesh_separation.h"
+#include "tests/support/off_file.h"
+#include "tests/support/surface_cases.h"
+#include "tests/support/temp_folder.h"
+
+// The force of a god object on triangles along random smooth paths, against the pose of least energy that the same
+// triangles allow (tests/support/mesh_separation.h). PASSUNG_LONG=1: 1000 paths of 1.2 s.
+
+namespace passung::grain {
+namespace {
+
+using scene::ContactMethod;
+
+constexpr double kSurfaceForce = 0.05;  // that a tick may differ by [N]
+
+/// `gap`: the reference keeps the program's gap too, else none.
+Judged judgedOf(const test::SurfaceCase& made, const std::string& prefix, bool gap) {
+    const std::string held = prefix + "_held.off", obstacle = prefix + "_obstacle.off";
+    test::writeOff(held, made.held);
+    test::writeOff(obstacle, made.obstacle);
+    const auto truth = std::make_shared<test::MeshPairTruth>(made.held, made.obstacle);
+    auto separation = std::make_unique<test::MeshSeparation>(made.held, made.obstacle);
+    Judged judged;
+    if (gap) judged.keep_gap = [kept = separation.get()](double now) { kept->keepGap(now); };
+    judged.separation = std::move(separation);
+    judged.scene = [held, obstacle](const Pose& start, ContactMethod method) {
+        scene::SceneSpec spec;
+        spec.parts.push_back({.name = "held", .geometry = scene::MeshFile{held, 1.0}, .X_WP = start, .held = true});
+        spec.parts.push_back({.name = "obstacle", .geometry = scene::MeshFile{obstacle, 1.0}, .X_WP = Pose{}});
+        spec.contact.method = method;
+        spec.contact.geometry = scene::Geometry::Surface;
+        spec.contact.stiffness = kStiffness;
+        spec.contact.rotational_stiffness = kRotationalStiffness;
+        spec.limits.max_force = 1e4;
+        spec.limits.max_torque = 1e4;
+        spec.limits.max_force_rate = 1e12;
+        return spec;
+    };
+    judged.overlap = [truth](const Pose& X) { return truth->distance(X, 1e-9) > 0.0 ? 0.0 : 1.0; };
+    judged.force = kSurfaceForce;
+    return judged;
+}
+
+struct Facets {
+    const char* name;
+    test::SurfaceCase (*make)(std::uint64_t seed);
+    int paths, all_paths;
+};
+void PrintTo(const Facets& facets, std::ostream* out) { *out << facets.name; }
+
+class FacetsOf : public testing::TestWithParam<Facets> {
+protected:
+    Seen follow(bool gap) {
+        const test::TempFolder folder;
+        const int paths = test::atFullLength() ? GetParam().all_paths : GetParam().paths;
+        Seen seen;
+        for (int i = 0; i < paths; ++i) {
+            const auto made = GetParam().make(100 + static_cast<std::uint64_t>(i));
+            Judge judge(judgedOf(made, folder / "parts", gap));
+            seen.add(judge.follow([&](int k) { return made.hand(1e-3 * k); }, 1200, "path " + std::to_string(i),
+                                  ContactMethod::GodObject));
+        }
+        std::printf(
+            "%s, %s: %ld ticks, %ld judged (reference: %ld snaps, %ld without an end; looks ended in %ld); force "
+            "beside it %.4f N at most, more than 0.05 N in %ld with more energy, %ld with less; step beyond it %.4f N, "
+            "%ld above 0.1 N; %d catches, longest %d ticks; worst %s\n",
+            GetParam().name, gap ? "the same gap" : "no gap", seen.ticks, seen.judged, seen.snaps, seen.unknown,
+            seen.lagging, seen.elsewhere, seen.off, seen.lower, seen.step, seen.steps, seen.catches, seen.longest,
+            seen.worst.c_str());
+        std::fflush(stdout);
+        return seen;
+    }
+};
+
+TEST_P(FacetsOf, AreFollowedAsTheLeastEnergySays) {
+    // Truth: dense geometry: conditions of vertices, faces and edges, written for this, and steps downhill under them,
+    // as far from each other as the program keeps its parts; crossings triangle by triangle.
+    const Seen seen = follow(true);
+    EXPECT_EQ(seen.overlap, 0.0) << "triangles cross";
+    EXPECT_LE(static_cast<double>(seen.off), 1e-3 * static_cast<double>(seen.judged)) << seen.worst;
+    EXPECT_LE(seen.step, 0.1);
+    EXPECT_EQ(seen.catches, 0);
+    EXPECT_GT(static_cast<double>(seen.judged), 0.75 * static_cast<double>(seen.ticks));
+}
+
+TEST_P(FacetsOf, AreFollowedAsIfThereWereNoGapButBesideWedges) {
+    // Truth: the same without a gap: what a gap of 1 um changes. Where faces wedge, it changes which pose is best.
+    const Seen seen = follow(false);
+    EXPECT_LE(static_cast<double>(seen.off), 0.03 * static_cast<double>(seen.judged)) << seen.worst;
+    EXPECT_LE(seen.step, 0.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, FacetsOf,
+                         testing::Values(Facets{"gear", test::gearInGear, 1, 100},
+                                         Facets{"dShaped", test::dShaft, 3, 450},
+                                         Facets{"groove", test::dovetail, 3, 450}),
+                         [](const auto& made) { return std::string(made.param.name); });
+
+}  // namespace
+}  // namespace passung::grain
