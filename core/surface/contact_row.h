@@ -38,8 +38,8 @@ struct ContactRow {
 ContactRow rowBetween(const HullPair& pair, const Placement& X0, const Placement& X, const NearestHulls& there,
                       const Placement& X1) noexcept;
 
-/// True if what a row holds is over the face whose plane it is against; a row that follows both faces always is. Past an
-/// end of the face the plane goes on, and nothing is there. rt-safe.
+/// True if what a row holds is over the face whose plane it is against; a row that follows both faces always is. Past
+/// an end of the face the plane goes on, and nothing is there. rt-safe.
 bool isOverItsFace(const ContactRow& row, const HullPair& pair, const Placement& X) noexcept;
 
 /// Sets a row to a new pose; false if its faces are too far from each other for it to mean anything. rt-safe.
