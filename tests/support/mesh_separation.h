@@ -65,7 +65,7 @@ private:
     static constexpr double kBeside = 1e-6;  // a normal beside an edge's cone [rad]
     static constexpr double kRoom = 1e-3;    // way of the held part after which near pairs are found anew [m]
     static constexpr double kFlat = 1e-6;    // between normals of one plane
-    static constexpr double kSame = 1e-12;   // vertices nearer than this are one [m]
+    static constexpr double kSame = 1e-9;    // vertices nearer than this are one [m]
 
     struct Corner {
         Vec3 p;
@@ -102,8 +102,7 @@ private:
             for (const Vec3& v : mesh.vertices) {
                 const Vec3 p = X * v;
                 std::array<std::int64_t, 3> key{};
-                for (std::size_t i = 0; i < 3; ++i)
-                    key[i] = std::llround(p[static_cast<Eigen::Index>(i)] / kSame / 1e3);
+                for (std::size_t i = 0; i < 3; ++i) key[i] = std::llround(p[static_cast<Eigen::Index>(i)] / kSame);
                 const auto [at, fresh] = places.try_emplace(key, this->corners.size());
                 if (fresh) this->corners.push_back({p, {}});
                 corner_of.push_back(at->second);
