@@ -26,34 +26,44 @@ scripted::Trajectory pathOf(const std::string& name) {
 void print(const std::string& what, const Seen& seen) {
     std::printf(
         "%s: %ld ticks, %ld judged (reference: %ld snaps, %ld without an end; looks ended in %ld); force beside it "
-        "%.4f N in the bore, %.4f N elsewhere; %ld of more than 0.01 N with more energy (by %.1e K mm2 at most), %ld "
+        "%.4f N in the bore, %.4f N elsewhere; %ld that differ with more energy (by %.1e K mm2 at most), %ld "
         "with less; step beyond it %.4f N; %d catches; overlap %.3f um; worst %s\n",
         what.c_str(), seen.ticks, seen.judged, seen.snaps, seen.unknown, seen.lagging, seen.bore, seen.elsewhere,
         seen.off, 1e6 * seen.energy, seen.lower, seen.step, seen.catches, 1e6 * seen.overlap, seen.worst.c_str());
     std::fflush(stdout);
 }
 
-Seen follow(Judge& judge, const Pair& pair, const Kind& kind, std::uint64_t seed, int ticks) {
+Seen follow(Judge& judge, const Pair& pair, const Kind& kind, std::uint64_t seed, int ticks,
+            ContactMethod method = ContactMethod::GodObject) {
     const Hand hand(pair, kind, seed);
     return judge.follow([&](int i) { return hand.at(1e-3 * i); }, ticks, kind.name + ", seed " + std::to_string(seed),
-                        ContactMethod::GodObject);
+                        method);
 }
 
-class PathsOver : public testing::TestWithParam<Pair> {};
+class PathsOver : public testing::TestWithParam<Pair> {
+protected:
+    bool round() const { return GetParam().name.find("peg in") == 0; }
+
+    /// One path of each kind, at full length 1000 of all pairs.
+    Seen followAll(Judge& judge, const Kind& kind, ContactMethod method) const {
+        const Pair& pair = GetParam();
+        const int paths = all() ? (pair.kinds.size() == 5 ? 34 : 80) : 1;
+        const auto first = static_cast<std::uint64_t>(100 + 1000 * (&kind - pair.kinds.data()));
+        Seen seen;
+        for (int i = 0; i < paths; ++i)
+            seen.add(follow(judge, pair, kind, first + static_cast<std::uint64_t>(i), all() || !round() ? 1200 : 600,
+                            method));
+        print(pair.name + ", " + kind.name, seen);
+        return seen;
+    }
+};
 
 TEST_P(PathsOver, AreFollowedAsTheLeastEnergySays) {
     // Truth: closed form: separations of convex pieces, and steps downhill under them, which share nothing with the
     // core but the shapes' dimensions; overlap: dense points against exact distances. Text T2, T3, T5, T8.
-    const Pair& pair = GetParam();
-    const bool round = pair.name.find("peg in") == 0;
-    const int paths = all() ? (pair.kinds.size() == 5 ? 34 : 80) : 1;
-    Judge judge(judgedOf(pair));
-    for (const Kind& kind : pair.kinds) {
-        Seen seen;
-        const auto first = static_cast<std::uint64_t>(100 + 1000 * (&kind - pair.kinds.data()));
-        for (int i = 0; i < paths; ++i)
-            seen.add(follow(judge, pair, kind, first + static_cast<std::uint64_t>(i), all() || !round ? 1200 : 600));
-        print(pair.name + ", " + kind.name, seen);
+    Judge judge(judgedOf(GetParam()));
+    for (const Kind& kind : GetParam().kinds) {
+        const Seen seen = followAll(judge, kind, ContactMethod::GodObject);
         EXPECT_LE(seen.bore, kForce) << seen.worst;
         EXPECT_LE(seen.step_bore, kForce);
         EXPECT_LE(seen.most_looks_bore, 8.0);
@@ -63,6 +73,22 @@ TEST_P(PathsOver, AreFollowedAsTheLeastEnergySays) {
         EXPECT_EQ(seen.catches, 0);
         EXPECT_LE(seen.overlap, 1e-7);
         EXPECT_LE(static_cast<double>(seen.lagging), std::max(1.0, static_cast<double>(seen.ticks) / 2000.0));
+        EXPECT_GT(static_cast<double>(seen.judged), 0.75 * static_cast<double>(seen.ticks));
+    }
+}
+
+TEST_P(PathsOver, AreFollowedByTheHeuristicWithinItsShare) {
+    // Truth: as above; the heuristic's mark: 0.05 N and 2 % of the force at 99 % of ticks.
+    Judged judged = judgedOf(GetParam());
+    judged.force = 0.05;
+    judged.share = 0.02;
+    Judge judge(std::move(judged));
+    for (const Kind& kind : GetParam().kinds) {
+        const Seen seen = followAll(judge, kind, ContactMethod::GodObjectHeuristic);
+        EXPECT_LE(static_cast<double>(seen.off), 1e-2 * static_cast<double>(seen.judged)) << seen.worst;
+        EXPECT_LE(seen.step, 0.1);
+        EXPECT_EQ(seen.catches, 0);
+        EXPECT_LE(seen.overlap, 1e-7);
         EXPECT_GT(static_cast<double>(seen.judged), 0.75 * static_cast<double>(seen.ticks));
     }
 }

@@ -120,7 +120,7 @@ struct Seen {
     long ticks = 0, judged = 0, in_bore = 0;
     long unknown = 0, snaps = 0;         // ticks: the reference found no end; snapped
     long lagging = 0;                    // ticks: the program's looks ended, and not for a snap alone
-    long lower = 0, off = 0;             // judged ticks that differ by more than kForce: energy below; not
+    long lower = 0, off = 0;             // judged ticks that differ: energy below; not
     double bore = 0.0, elsewhere = 0.0;  // largest difference of the force [N]; elsewhere: where energy is not below
     double energy = -1.0;                // largest energy above the reference's [m²]
     double step = 0.0, step_bore = 0.0;  // largest step beyond the reference's [N]
@@ -161,6 +161,7 @@ struct Judged {
     std::function<double(const Pose&)> overlap;                // [m]
     double bore = 0.0;                                         // as in Pair
     double force = kForce;                                     // that a tick may differ by [N]
+    double share = 0.0;                                        // of the reference's force, beside it
     std::function<void(double gap)> keep_gap = [](double) {};  // of the reference, told before each tick's [m]
 };
 
@@ -227,6 +228,7 @@ private:
         const Pose X_WH = path(i);
         const Vec3 force = kStiffness * (out.X_WG.p - X_WH.p), meant = kStiffness * (truth.X.p - X_WH.p);
         const double error = (force - meant).norm();
+        const bool differs = error > judged_.force + judged_.share * meant.norm();
         const double above = 0.5 * truth::pullTo(out.X_WG, X_WH, rho_).squaredNorm() - truth.energy;
         const bool in_bore = judged_.bore > 0.0 && out.X_WG.p.z() < -judged_.bore && X_WH.p.z() < -judged_.bore;
         ++seen.judged;
@@ -236,7 +238,7 @@ private:
             seen.bore = std::max(seen.bore, error);
             seen.most_looks_bore = std::max(seen.most_looks_bore, static_cast<double>(out.frame.iterations));
         }
-        if (error > judged_.force) ++(above <= 0.0 ? seen.lower : seen.off);
+        if (differs) ++(above <= 0.0 ? seen.lower : seen.off);
         if (above > 0.0 && error > seen.elsewhere) {
             seen.elsewhere = error;
             seen.worst = name + ", tick " + std::to_string(i);
@@ -244,7 +246,7 @@ private:
         if (!compares || i == 0) return;
         const Vec3 before = kStiffness * (X_last.p - path(i - 1).p);
         const double beyond = (force - before).norm() - (meant - before).norm();
-        if (above <= 0.0 && error > judged_.force) return;  // another minimum
+        if (above <= 0.0 && differs) return;  // another minimum
         seen.step = std::max(seen.step, beyond);
         if (in_bore) seen.step_bore = std::max(seen.step_bore, beyond);
         if (beyond > 0.1) ++seen.steps;
