@@ -7,6 +7,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,8 @@ struct Pair {
     std::vector<Kind> kinds;
     double bore = 0.0;  // depth of the tip from which on it is in a bore [m]; 0: there is none
 };
+
+inline void PrintTo(const Pair& pair, std::ostream* out) { *out << pair.name; }
 
 /// A path of one kind: from the start, without a turn, then about.
 class Hand {

@@ -108,6 +108,7 @@ TEST_P(FacetsOf, AreFollowedByTheHeuristicWithinItsShare) {
     EXPECT_LE(static_cast<double>(seen.off), 1e-2 * static_cast<double>(seen.judged)) << seen.worst;
     EXPECT_LE(seen.step, 0.1);
     EXPECT_EQ(seen.catches, 0);
+    EXPECT_LE(static_cast<double>(seen.lagging), std::max(1.0, 1e-3 * static_cast<double>(seen.ticks)));
     EXPECT_GT(static_cast<double>(seen.judged), 0.75 * static_cast<double>(seen.ticks));
 }
 
