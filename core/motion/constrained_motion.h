@@ -11,12 +11,21 @@
 
 namespace passung::motion {
 
+/// A piece of where two surfaces lie on each other.
+struct TouchingPiece {
+    Vec3 centre = Vec3::Zero();  // world [m]
+    Vec3 normal = Vec3::Zero();  // unit, out of the obstacle
+    double area = 0.0;           // [m²]
+    std::uint32_t obstacle = 0;
+};
+
 /// What a body's motion meets.
 struct Surroundings {
     const contact::ContactManifold& contacts;
-    PlacedMetric metric;         // of the body's motions
-    double keep_out;             // the φ that a contact must keep, slightly negative [m]
-    double sunk_out = keep_out;  // and that one keeps which is deeper already, ≤ keep_out
+    PlacedMetric metric;                         // of the body's motions
+    double keep_out;                             // the φ that a contact must keep, slightly negative [m]
+    double sunk_out = keep_out;                  // and that one keeps which is deeper already, ≤ keep_out
+    std::span<const TouchingPiece> pieces = {};  // where contacts are corners of what touches; else they have its areas
 
     /// How far the point at `p_WP` is carried by `u` [m].
     Vec3 wayOf(const Vec3& p_WP, const Motion& u) const noexcept {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 
 #include "core/motion/constrained_motion.h"
 
@@ -24,6 +25,9 @@ struct FrictionPatch {
     double slip = 0.0;  // |s| below [m]
     bool slides = false;
 };
+
+/// Two unit vectors along the plane across `n`. rt-safe.
+std::pair<Vec3, Vec3> tangentsOf(const Vec3& n) noexcept;
 
 /// `impulse` along the surface, as a vector of the world [m]; its third part, the torsion, apart. rt-safe.
 Vec3 impulseAlong(const FrictionPatch& patch) noexcept;
@@ -56,7 +60,8 @@ inline constexpr int kMostSteps = 1000;  // rows that these take up in all
 /// `sliding` for one that does.
 ///
 /// r_e is the mean distance from the centre of pressure over the patch, under the pressure that varies linearly over it
-/// and has that centre: 2/3 R for a disc pressed evenly, half the distance for two equal feet.
+/// and has that centre: 2/3 R for a disc pressed evenly, half the distance for two equal feet. The patch is the
+/// contacts by their areas, or the pieces of Surroundings; where it has neither, the contacts as feet.
 ///
 /// Solution: friction_balance.h. Contacts and cone are obeyed always, up to the tolerance of constrained_motion.h and
 /// up to μ `change` |w|; slip is against friction where `converged`.

@@ -24,7 +24,17 @@ Vec3 impulseAlong(const FrictionPatch& patch) noexcept {
 
 double effectiveRadius(const Surroundings& around, const FrictionPatch& patch, const Motion& u) noexcept {
     const auto [t1, t2] = tangentsOf(patch.normal);
+    const auto isOf = [&](const TouchingPiece& piece) {
+        return piece.obstacle == patch.obstacle && piece.normal.dot(patch.normal) > kSameWay;
+    };
+    const bool in_pieces = std::any_of(around.pieces.begin(), around.pieces.end(), isOf);
     const auto forTouching = [&, t1 = t1, t2 = t2](auto use) {
+        for (const TouchingPiece& piece : around.pieces) {
+            if (!isOf(piece)) continue;
+            const Vec3 r = piece.centre - patch.centre;
+            use(piece.area, Eigen::Vector2d(r.dot(t1), r.dot(t2)));
+        }
+        if (in_pieces) return;
         for (const contact::ContactPoint& c : around.contacts) {
             const double facing = c.gradient.dot(patch.normal);
             if (c.obstacle != patch.obstacle || !(facing > 0.0) ||

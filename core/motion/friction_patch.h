@@ -1,7 +1,5 @@
 #pragma once
 
-#include <utility>
-
 #include "core/motion/friction.h"
 
 namespace passung::motion {
@@ -9,9 +7,6 @@ namespace passung::motion {
 // Geometry of a patch of contacts that rub as one. rt-safe.
 
 inline constexpr double kSameWay = 0.985;  // cosine of 10 degrees: contacts that face so much alike rub as one
-
-/// Two unit vectors along the plane across `n`.
-std::pair<Vec3, Vec3> tangentsOf(const Vec3& n) noexcept;
 
 /// The friction of `patch` in the tangents of a normal that differs a little.
 Vec3 turned(const FrictionPatch& patch, const Vec3& normal) noexcept;

@@ -38,12 +38,11 @@ const char* closedFormProblem(const PartSpec& held, const PartSpec& obstacle, co
     return nullptr;
 }
 
-/// Why the scene has no contact of surfaces; nothing if it has.
-const char* surfaceProblem(const PartSpec& held, const PartSpec& obstacle, const ContactSpec& contact) {
+/// Why a scene has no contact of surfaces; nothing if it has.
+const char* surfaceProblem(const ContactSpec& contact) {
     if (contact.method == ContactMethod::Penalty)
         return "surface needs a god object: the penalty is a sum over sample points";
     if (contact.proxy_filter > 0.0) return "surface needs a proxy without low-pass (contact.proxy_filter_hz)";
-    if (rub(held, obstacle)) return "surface needs parts without friction";
     return nullptr;
 }
 
@@ -62,8 +61,9 @@ GeometryChoice geometryOfPair(const PartSpec& held, const PartSpec& obstacle, co
     if (contact.geometry != Geometry::Auto) return {contact.geometry, "contact.geometry names it"};
     if (closedFormProblem(held, obstacle, contact) == nullptr)
         return {Geometry::ClosedForm, "a god object, and parts that are parametric shapes"};
-    if (const char* problem = surfaceProblem(held, obstacle, contact)) return {Geometry::Field, problem};
-    return {Geometry::Surface, "a god object, and a part that is a mesh, a sheet or a thread without its counterpart"};
+    if (const char* problem = surfaceProblem(contact)) return {Geometry::Field, problem};
+    return {Geometry::Surface,
+            "a god object, and parts that rub, or one that is a mesh, a sheet or a thread without its counterpart"};
 }
 
 GeometryChoice geometryOf(const SceneSpec& scene) {
@@ -82,13 +82,13 @@ std::optional<std::string> geometryProblem(const SceneSpec& scene) {
     const auto thread = std::find_if(scene.parts.begin(), scene.parts.end(), isThread);
     if (thread != scene.parts.end() && scene.parts.size() > 1 && geometryOf(scene).geometry == Geometry::Field)
         return "must not be distance fields with a thread, whose field would take minutes: needs a god object without "
-               "friction and proxy_filter_hz (" +
+               "proxy_filter_hz (" +
                thread->name + ")";
     if (asked != Geometry::ClosedForm && asked != Geometry::Surface) return std::nullopt;
-    const auto problemOf = asked == Geometry::Surface ? surfaceProblem : closedFormProblem;
     std::optional<std::string> first;
     eachPair(scene, [&](const PartSpec& held, const PartSpec& obstacle) {
-        const char* const problem = problemOf(held, obstacle, scene.contact);
+        const char* const problem = asked == Geometry::Surface ? surfaceProblem(scene.contact)
+                                                               : closedFormProblem(held, obstacle, scene.contact);
         if (!first && problem != nullptr) first = std::string(problem) + " (" + held.name + ", " + obstacle.name + ")";
     });
     return first;

@@ -1,15 +1,25 @@
 #pragma once
 
+#include <vector>
+
+#include "core/motion/friction.h"
 #include "core/surface/approach.h"
 #include "core/surface/enclosure.h"
 #include "core/surface/hull_distance.h"
 
 namespace passung::surface {
 
+/// How a body's triangles rub on the held part, from `first_triangle` on to the next.
+struct RubbingSurface {
+    std::uint32_t first_triangle = 0;
+    motion::Friction friction;
+};
+
 /// What the held part must not meet: a tree, and where its frame lies in the world.
 struct SurfaceBody {
     const ClusterTree* tree = nullptr;
     Pose X_WB;
+    std::vector<RubbingSurface> rubbing = {};  // from triangle 0 on, ascending; empty: none does
 };
 
 /// What must not be met, and what is known of it.
@@ -23,7 +33,9 @@ struct KnownBody {
     bool behind = false;  // of those asleep some may be due
     bool asks = true;     // whether something lies wholly within the other part
     EnclosureSearch enclosure;
-    double clear = 0.0;  // out of reach: the way travelled up to which it stays so [m]
+    std::vector<std::uint32_t> first_triangles;  // of its surfaces that rub, which are numbered
+    std::size_t first_surface = 0;               // from here on
+    double clear = 0.0;                          // out of reach: the way travelled up to which it stays so [m]
 
     Placement P, P_known;  // the held part; before the body moved
     PerClass settled{};    // keys of all that are not near are no less [m]

@@ -342,6 +342,7 @@ void SurfaceProxy::addRow(NearPair& near) noexcept {
 void SurfaceProxy::accept() noexcept {
     rest_before_ = rest_;
     gone_ = u_;
+    rubbed_ = patches_;
     if (limited_ && rounds_ == 0) trust_ = std::max(trust_, std::min(2.0 * trust_, kFastest));
     hurry_ = std::min(1.0, 2.0 * hurry_);
     X_ = X_next_;

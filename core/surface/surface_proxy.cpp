@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/surface/touching_pieces.h"
+
 namespace passung::surface {
 
 namespace {
@@ -24,10 +26,17 @@ constexpr double kOpposite = -0.7;               // cosine of the normals of two
 constexpr double kStraight = 0.95;               // cosine: they face each other
 constexpr int kMostRefined = 8;                  // planes in a tick
 constexpr int kMostGhosts = 3;                   // rounds of a look that drop some
-constexpr double kTold = 1e-9;                   // [m]: welding and rounding, which the told gap leaves out
-constexpr std::size_t kLookedOver = 8;           // near pairs for a unit of work
-constexpr double kTouches = 1.2;                 // gaps: a row no farther away holds the pose
-constexpr double kUnlimited = 0.1;               // [m]: the least gap where nothing is near
+constexpr double kCaught = 1e-7;                 // [m]: by a way below this a proxy is caught or at rest
+constexpr double kTwins = 0.98;                  // cosine of the normals of two rows that hold
+constexpr double kTogether = 2.0;                // gaps: faces nearer lie on each other
+constexpr std::size_t kMostPieces = 512;
+constexpr int kTouchingShare = 16;                        // of the budget, for finding where
+constexpr std::ptrdiff_t kFewPairs = 8, kMorePairs = 64;  // of faces that lie on each other
+constexpr int kFinePieces = 24;                           // of each where they are few
+constexpr double kTold = 1e-9;                            // [m]: welding and rounding, which the told gap leaves out
+constexpr std::size_t kLookedOver = 8;                    // near pairs for a unit of work
+constexpr double kTouches = 1.2;                          // gaps: a row no farther away holds the pose
+constexpr double kUnlimited = 0.1;                        // [m]: the least gap where nothing is near
 constexpr std::size_t kMostWoken = 2500;
 constexpr int kMostIdle = 3;  // ticks of a row that does not hold, and after rows held
 constexpr int kMostRounds = 4;
@@ -38,6 +47,7 @@ constexpr double kNearlyWhole = 0.95;  // of a motion: shortened by less, it is 
 constexpr double kPart = 0.3;          // of a motion that leaves an overlap: along the hand
 
 constexpr int kApproachWork = 40;  // of one body more
+constexpr int kRubWork = 24;       // of a row that friction takes up or lets go
 
 std::size_t pairsFor(const ClusterTree& held, std::span<const SurfaceBody> bodies) {
     std::size_t size = held.size();
@@ -61,7 +71,15 @@ SurfaceProxy::SurfaceProxy(const ClusterTree& held, std::span<const SurfaceBody>
       manifold_(kMostRows),
       gap_(settings.gap) {
     bodies_.reserve(bodies.size());
-    for (const SurfaceBody& body : bodies) bodies_.emplace_back(held, body);
+    for (const SurfaceBody& body : bodies) {
+        KnownBody& known = bodies_.emplace_back(held, body);
+        known.first_surface = friction_.size();
+        for (const RubbingSurface& surface : body.rubbing) {
+            known.first_triangles.push_back(surface.first_triangle);
+            friction_.push_back(surface.friction);
+        }
+    }
+    if (!friction_.empty()) touching_.resize(kMostPieces);
     place({});
 }
 
@@ -86,6 +104,7 @@ void SurfaceProxy::place(const Pose& X_WG) noexcept {
     let_go_ = false;
     X_WH_last_.reset();
     gone_.setZero();
+    patches_ = rubbed_ = {};
     since_held_ = kMostIdle + 1;
     phase_ = Phase::Idle;
 }
@@ -210,8 +229,48 @@ void SurfaceProxy::adaptGap() noexcept {
     gap_ = std::min(wanted, gap_ + kOpening);
 }
 
+/// Which of the surfaces that rub a face of a body is of.
+std::uint32_t SurfaceProxy::surfaceOf(std::size_t body, std::uint32_t face) const noexcept {
+    const auto& firsts = bodies_[body].first_triangles;
+    const auto after = std::upper_bound(firsts.begin(), firsts.end(), (*bodies_[body].tree)[face].triangle);
+    return static_cast<std::uint32_t>(bodies_[body].first_surface +
+                                      static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - firsts.begin(), 1)) -
+                                      1);
+}
+
+/// Where faces lie on each other, for the torsion of what rubs.
+void SurfaceProxy::findTouching() noexcept {
+    touching_count_ = 0;
+    const double within = kTogether * gap_;
+    const auto touches = [&](const NearPair& near) {
+        return near.faces && !near.meets && near.s < within && !bodies_[near.body].first_triangles.empty() &&
+               lieAlong(hulls(near.pair), bodies_[near.body].P, near.n);
+    };
+    const auto pairs = std::count_if(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(near_count_), touches);
+    const int fineness = pairs <= kFewPairs ? kFinePieces : pairs <= kMorePairs ? 1 : 0;
+    tick_.work += static_cast<int>(near_count_ / kLookedOver);
+    const int most = tick_.work + budget_ / kTouchingShare;
+    for (std::size_t i = 0; i < near_count_ && tick_.work < most; ++i) {
+        const NearPair& near = near_[i];
+        const KnownBody& body = bodies_[near.body];
+        if (!touches(near)) continue;
+        const auto room = std::span(touching_).subspan(touching_count_);
+        const HullPair pair = hulls(near.pair);
+        const std::size_t count = findPieces(pair, body.P, near.n, within, fineness, room);
+        tick_.work +=
+            10 + 2 * static_cast<int>(pair.of_held.count + pair.of_obstacle.count) + static_cast<int>(count) / 4;
+        for (motion::TouchingPiece& piece : room.first(count)) {
+            piece.centre = body.inWorld(piece.centre);
+            piece.normal = body.directionInWorld(piece.normal);
+            piece.obstacle = surfaceOf(near.body, forest_[near.pair].obstacle);
+        }
+        touching_count_ += count;
+    }
+}
+
 /// The motion nearest to the hand's that the rows leave.
 void SurfaceProxy::solve() noexcept {
+    const bool rubs = !friction_.empty() && !overlaps_;
     manifold_.clear();
     std::array<std::uint32_t, 6> likely;
     std::size_t likely_count = 0;
@@ -224,10 +283,32 @@ void SurfaceProxy::solve() noexcept {
         contact.gradient = normalOf(row);
         contact.normal = -contact.gradient;
         contact.phi = std::max(row.s - gap_, -ease_) + row.bend;
+        if (rubs) {
+            contact.phi -= gap_;
+            contact.area = 1.0;
+            contact.obstacle = surfaceOf(row.body, row.obstacle);
+        }
         manifold_.tryPush(contact);
     }
-    const motion::Surroundings around{manifold_, settings_.metric.at(X_), 0.0};
-    const motion::ConstrainedMotion result = motion::constrainMotion(wanted_, around, {likely.data(), likely_count});
+    const std::span<const std::uint32_t> before{likely.data(), likely_count};
+    motion::ConstrainedMotion result;
+    if (rubs) {
+        // A gap more on both sides: what is nearer than two of them touches.
+        const motion::Surroundings around{.contacts = manifold_,
+                                          .metric = settings_.metric.at(X_),
+                                          .keep_out = -gap_,
+                                          .pieces = {touching_.data(), touching_count_}};
+        const motion::FrictionMotion rubbed =
+            motion::constrainWithFriction(wanted_, around, friction_, rubbed_, before);
+        result = rubbed.motion;
+        patches_ = rubbed.patches;
+        tick_.turns = std::max(tick_.turns, rubbed.sweeps);
+        tick_.unbalanced = tick_.unbalanced || !rubbed.converged;
+        tick_.work += kRubWork * result.iterations + static_cast<int>(touching_count_);
+    } else {
+        patches_.count = 0;
+        result = motion::constrainMotion(wanted_, {manifold_, settings_.metric.at(X_), 0.0}, before);
+    }
     u_ = result.u;
     for (int i = 0; i < result.active; ++i) {
         const motion::ActiveContact& active = result.active_contacts[static_cast<std::size_t>(i)];
@@ -280,7 +361,10 @@ bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
     if (X_WH_.p != X_WH.p || X_WH_.q.coeffs() != X_WH.q.coeffs()) gone_.setZero();
     X_WH_ = X_WH;
     refreshRows();
-    if (tick_.looks == 0) adaptGap();
+    if (tick_.looks == 0) {
+        adaptGap();
+        if (!friction_.empty() && !overlaps_) findTouching();
+    }
     ease_ = tick_.looks == 0 ? kEase : 0.0;
     wanted_ = pull_ != nullptr ? pull_->wantedAt(settings_.metric, X_) : settings_.metric.between(X_, X_WH_);
     if (!(most_in_tick_ - way_in_tick_ > kStill)) return false;
@@ -289,8 +373,9 @@ bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
         row_count_ = 0;
     }
     solve();
+    if (tick_.looks == 0) rubbed_ = patches_;
     rest_ = u_;
-    if (const double times = overlaps_ ? 1.0 : relaxation(); times != 1.0) {
+    if (const double times = overlaps_ || !friction_.empty() ? 1.0 : relaxation(); times != 1.0) {
         wanted_ += (times - 1.0) * u_;
         solve();
     }
@@ -299,8 +384,14 @@ bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
     if (left < kLeastLeft * most) return false;
     const double room = std::min(overlaps_ ? kFastest : trust_, left);
     limited_ = false;
-    const double length = u_.norm();
+    double length = u_.norm();
     limit(room);
+    // What rubs may rest against all rows.
+    if (way_ < kCaught && tick_.looks == 0 && friction_.empty() && dropsTwins()) {
+        solve();
+        length = u_.norm();
+        limit(room);
+    }
     if (way_ < kStill) return false;
     if (const double share = u_.norm() / length; share < kNearlyWhole) {
         // Rows have to bind where the look ends, so that what they overlook there can be allowed for.
@@ -449,6 +540,25 @@ bool SurfaceProxy::dropsGhosts() noexcept {
     return any;
 }
 
+/// Where two planes that hold almost face the same way, the one that bears less goes. Around an edge planes turn within
+/// the gap, so that one that leans may bar a way that the faces leave: a look has to tell. True if there were any.
+bool SurfaceProxy::dropsTwins() noexcept {
+    std::size_t kept = 0;
+    const auto hasStronger = [&](std::size_t i) {
+        for (std::size_t k = 0; k < row_count_; ++k)
+            if (rows_[k].push > rows_[i].push && rows_[k].body == rows_[i].body && rows_[k].n.dot(rows_[i].n) > kTwins)
+                return true;
+        return false;
+    };
+    std::array<bool, kMostRows> goes{};
+    for (std::size_t i = 0; i < row_count_; ++i) goes[i] = rows_[i].push > 0.0 && !rows_[i].fixed && hasStronger(i);
+    for (std::size_t i = 0; i < row_count_; ++i)
+        if (!goes[i]) rows_[kept++] = rows_[i];
+    const bool any = kept < row_count_;
+    row_count_ = kept;
+    return any;
+}
+
 const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH, const motion::Pull* pull) noexcept {
     pull_ = pull;
     tick_ = {};
@@ -482,6 +592,8 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH, const motion::Pull* p
             tick_.suspended = true;
         } else if (checked == Checked::Astray) {
             if (!shorten()) break;
+        } else if (checked == Checked::Violated && !friction_.empty() && spent()) {
+            tick_.suspended = true;  // another motion with friction takes long
         } else if (checked == Checked::Violated ||
                    (ghosts_ < kMostGhosts && !tick_.waits && 2 * tick_.work < budget_ && dropsGhosts())) {
             if (tryAgain(checked == Checked::Violated)) continue;

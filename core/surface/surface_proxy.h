@@ -35,6 +35,8 @@ struct SurfaceTick {
     int rounds = 0;  // motions solved for
     int work = 0;
     int rows = 0, active = 0;  // conditions, and those that hold the pose
+    int turns = 0;             // of friction, most of one motion (friction_balance.h)
+    bool unbalanced = false;   // some friction found no balance
 };
 
 /// Keeps a held part's triangles from ever meeting those of bodies while it follows a hand. Bodies rest while it moves
@@ -76,6 +78,10 @@ struct SurfaceTick {
 /// each, for its whole way; then each of the others is told (moveBody), and begins its own way with what is true at
 /// that pose. Two faces are apart at each pose of any way, and each way begins where the one before has ended. A body
 /// moved together with the part leaves all of it as it is: only relative poses are kept.
+///
+/// Friction: each look's motion is that of friction.h under the same rows, each a corner of what touches. How far a
+/// patch bears torsion is measured where faces lie on each other (touching_pieces.h). What slid in the last look that
+/// was made slides on; a tick that makes none is a rest.
 ///
 /// Bodies out of reach: boxes that are farther apart than any tick goes. Nothing of them is kept or looked at.
 ///
@@ -147,6 +153,8 @@ public:
     }
     /// How far the proxy may go against it before it holds, at the pose of now [m].
     double roomOf(const ContactRow& row) const noexcept { return row.gapAt(bodies_[row.body].P) - gap_; }
+    /// Where the last motion rubbed. `obstacle` is the place in the list of all bodies' `rubbing`, one after the other.
+    const motion::FrictionPatches& patches() const noexcept { return patches_; }
     const Pose& pose() const noexcept { return X_; }
     /// The poses accepted in the last tick, in order.
     std::span<const Pose> chain() const noexcept { return {chain_.data(), chain_count_}; }
@@ -229,6 +237,8 @@ private:
     void refreshRows() noexcept;
     void adaptGap() noexcept;
     void solve() noexcept;
+    std::uint32_t surfaceOf(std::size_t body, std::uint32_t face) const noexcept;
+    void findTouching() noexcept;
     double relaxation() const noexcept;
     double goodEnough() const noexcept;
     bool isHeld() const noexcept;
@@ -242,6 +252,7 @@ private:
     HullPair hulls(const ContactRow& row) const noexcept;
     bool isGhost(const ContactRow& row, const Placement& X) noexcept;
     bool dropsGhosts() noexcept;
+    bool dropsTwins() noexcept;
     void refineLeast() noexcept;
     void tell() noexcept;
 
@@ -256,6 +267,12 @@ private:
     std::vector<ContactRow> rows_;
     std::size_t row_count_ = 0;
     contact::ContactManifold manifold_;
+
+    // Of what rubs.
+    std::vector<motion::Friction> friction_;       // of all surfaces; empty: nothing does
+    std::vector<motion::TouchingPiece> touching_;  // where faces lie on each other, at the tick's begin
+    std::size_t touching_count_ = 0;
+    motion::FrictionPatches patches_, rubbed_;  // of the last motion; of the last that was made, or began a rest
 
     Pose X_;                    // accepted
     Placement P_;               // the same

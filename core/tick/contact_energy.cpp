@@ -30,6 +30,10 @@ public:
         return {force, turn_ * ((point - centre_).cross(along) + torsion) + lever_.cross(force)};
     }
 
+    Wrench of(const motion::FrictionPatch& patch) const noexcept {
+        return at(patch.centre, motion::impulseAlong(patch), patch.radius * patch.impulse.z() * patch.normal);
+    }
+
 private:
     /// Of what contacts turn the part by, over the levers' share: shown as far as the coupling turns the hand.
     static double turnOf(const HandModel& model, const HeldTarget& target) noexcept {
@@ -52,6 +56,11 @@ void addPush(const HandModel& model, const HeldTarget& target, const Pose& X_WG,
     add(of, push.at(point, along), pressure);
 }
 
+void addRub(const HandModel& model, const HeldTarget& target, const Pose& X_WG, const motion::FrictionPatch& patch,
+            ObstaclePush& of) noexcept {
+    add(of, CouplingPush(model, target, X_WG).of(patch), 0.0);
+}
+
 void notePushes(const HandModel& model, const HeldTarget& target, const Proxy& proxy,
                 const motion::ConstrainedMotion& motion, const motion::FrictionPatches& rubbing,
                 Pushes& pushes) noexcept {
@@ -65,8 +74,7 @@ void notePushes(const HandModel& model, const HeldTarget& target, const Proxy& p
     }
     for (int p = 0; p < rubbing.count; ++p) {
         const motion::FrictionPatch& patch = rubbing.patch[static_cast<std::size_t>(p)];
-        const Vec3 torsion = patch.radius * patch.impulse.z() * patch.normal;
-        add(pushes.pushes[patch.obstacle], push.at(patch.centre, motion::impulseAlong(patch), torsion), 0.0);
+        add(pushes.pushes[patch.obstacle], push.of(patch), 0.0);
     }
 }
 

@@ -32,6 +32,9 @@ void clearPushes(Pushes& pushes) noexcept;
 /// Adds what a contact at `point` pushes the held part with, K times `along` [m]. rt-safe.
 void addPush(const HandModel& model, const HeldTarget& target, const Pose& X_WG, const Vec3& point, const Vec3& along,
              double pressure, ObstaclePush& of) noexcept;
+/// Adds what a patch rubs the held part with. rt-safe.
+void addRub(const HandModel& model, const HeldTarget& target, const Pose& X_WG, const motion::FrictionPatch& patch,
+            ObstaclePush& of) noexcept;
 /// In place of the pushes so far: those of the contacts and patches that hold `motion` of the proxy. rt-safe.
 void notePushes(const HandModel& model, const HeldTarget& target, const Proxy& proxy,
                 const motion::ConstrainedMotion& motion, const motion::FrictionPatches& rubbing,

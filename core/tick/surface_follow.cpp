@@ -9,6 +9,12 @@ namespace passung::tick {
 
 namespace {
 
+/// Which obstacle a surface that rubs is, by its number (SurfaceProxy::patches).
+std::size_t rubbingObstacle(const HandModel& model, std::size_t surface) noexcept {
+    const std::size_t still = model.still_surface != nullptr ? model.resting.size() : 0;
+    return surface < still ? model.resting[surface] : model.moving[surface - still];
+}
+
 /// In place of the pushes so far: K λ along each row's normal (contact_energy.h).
 void noteRows(const HandModel& model, const HeldTarget& target, const surface::SurfaceProxy& surface,
               Pushes& pushes) noexcept {
@@ -17,6 +23,11 @@ void noteRows(const HandModel& model, const HeldTarget& target, const surface::S
         if (!(row.push > 0.0)) continue;
         addPush(model, target, surface.pose(), surface.pointOf(row), row.push * surface.normalOf(row),
                 model.contact.stiffness * target.stiffness * row.push, pushes.pushes[obstacleOf(model, surface, row)]);
+    }
+    const motion::FrictionPatches& patches = surface.patches();
+    for (int p = 0; p < patches.count; ++p) {
+        const motion::FrictionPatch& patch = patches.patch[static_cast<std::size_t>(p)];
+        addRub(model, target, surface.pose(), patch, pushes.pushes[rubbingObstacle(model, patch.obstacle)]);
     }
 }
 
@@ -40,10 +51,15 @@ SurfaceFollow surfaceFollow(const HandModel& model) {
     SurfaceFollow follow;
     // Those that rest are one body, in the world; then those in other hands.
     std::vector<surface::SurfaceBody> bodies;
-    if (model.still_surface != nullptr) bodies.push_back({model.still_surface, {}});
+    if (model.still_surface != nullptr) {
+        surface::SurfaceBody& still = bodies.emplace_back(model.still_surface);
+        for (std::size_t i = 0; !model.friction.empty() && i < model.resting.size(); ++i)
+            still.rubbing.push_back({model.first_triangles[i], model.friction[model.resting[i]]});
+    }
     for (const std::uint32_t i : model.moving) {
         const Body& body = model.bodies[model.obstacles[i].body];
-        bodies.push_back({body.surface, body.X_WP_start});
+        surface::SurfaceBody& moving = bodies.emplace_back(body.surface, body.X_WP_start);
+        if (!model.friction.empty()) moving.rubbing.push_back({0, model.friction[i]});
     }
     follow.surface.emplace(
         *model.held_surface, bodies,
@@ -76,10 +92,11 @@ void followOnSurface(const HandModel& model, const HandSample& hand, const HeldT
     proxy.clearance = now.gap;
     report.iterations += static_cast<std::uint32_t>(now.looks);
     report.rows_taken = std::max(report.rows_taken, static_cast<std::uint32_t>(now.rows));
+    report.friction_turns = std::max(report.friction_turns, static_cast<std::uint32_t>(now.turns));
     report.nodes_visited += static_cast<std::uint32_t>(now.work);
     if (now.suspended || now.waits) report.status |= kSuspended;
     if (now.meets) report.status |= kLedOut;
-    if (now.stuck) report.status |= kIterationLimit;
+    if (now.stuck || now.unbalanced) report.status |= kIterationLimit;
     noteRows(model, target, *follow.surface, pushes);
 }
 

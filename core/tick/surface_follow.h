@@ -46,7 +46,7 @@ void followOnSurface(const HandModel& model, const HandSample& hand, const HeldT
 inline constexpr StageOf kSurfaceProxy{
     followOnSurface,
     {.name = "surface proxy",
-     .parameters = "contact.method, geometry, stiffness_N_per_m, rotational_stiffness",
+     .parameters = "contact.method, geometry, stiffness_N_per_m, rotational_stiffness; friction",
      .cost = "at most 38 000 units of work a tick, about 0.7 ms; what is left goes on in the next tick",
      .needs = [](const HandModel& model) { return model.hasSurfaces(); },
      .reason =

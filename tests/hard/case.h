@@ -48,6 +48,7 @@ struct Case {
     // Of seeds above 0: the parts as meshes that lie otherwise in their frames (relaid.h), shapes with this chord error
     // [m]. 0: not so.
     double relaid_chord = 0.0;
+    scene::Geometry geometry = scene::Geometry::Field;  // whatever the file says
 };
 
 /// The whole table; the order is that of the printed one.

@@ -436,6 +436,11 @@ Drive a11Drive(const SceneSpec& spec, std::uint64_t seed) {
     return walk.drive(fixedPart(spec).X_WP);
 }
 
+Case onSurfaces(Case c) {
+    c.geometry = scene::Geometry::Surface;
+    return c;
+}
+
 /// Down by 1 mm and up again; on the way `aside` [mm] along the plane, and back in the air.
 Drive cycle(const SceneSpec& spec, double aside) {
     const Pose start = heldPart(spec).X_WP;
@@ -500,6 +505,8 @@ std::vector<Case> truthCases() {
         {"a6_peg_tilt", "a6", "tilt at two contacts", "%", 2, 3, 3, 0.8, 0.8, a6Drive, a6, shallowOrDeep},
         {"a7_wedging", "a7", "wrong decisions, friction by depth", "", 0, 8, 16, 0.15, 0.4, a7Drive, a7, wedged, kGods,
          true},
+        onSurfaces({"a7_wedging_surface", "a7", "wrong decisions, friction by depth", "", 0, 8, 16, 0.15, 0.4, a7Drive,
+                    a7, wedged, kGods, true}),
         {"a8_corner", "a8", "force off the bisector", "deg", 0.5, 6, 20, 0.4, 0.4, a8Drive, a8, turned, kGods, false,
          nullptr, nullptr, 2e-6},
         {"a9_plane", "table", "overlap per cell", "", 0.05, 1, 1, 3, 3, pressAndSlide, a9},
@@ -507,6 +514,10 @@ std::vector<Case> truthCases() {
         {"a10_cone", "a10_block", "friction against its coefficient", "%", 1, 2, 5, 2.2, 2.2, a10Drive, a10, turned},
         {"a10_cone_two_way", "a10_two_way", "friction against its coefficient", "%", 1, 1, 5, 1.5, 2.2, a10Drive, a10,
          turned},
+        onSurfaces({"a10_cone_surface", "a10_block", "friction against its coefficient", "%", 1, 2, 5, 2.2, 2.2,
+                    a10Drive, a10, turned}),
+        onSurfaces({"a10_torsion_surface", "a10_disc", "torque against 2/3 mu F R", "%", 5, 2, 5, 0.8, 0.8,
+                    a10TurnDrive, a10Turn, turned}),
         {"a10_torsion", "a10_disc", "torque against 2/3 mu F R", "%", 5, 2, 5, 0.8, 0.8, a10TurnDrive, a10Turn, turned},
         {"a11_thin_plate", "a11", "poses in which FCL finds the plate in the ball", "", 0, 1, 10, 8, 500, a11Drive,
          crossingCount},

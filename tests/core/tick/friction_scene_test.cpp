@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/scene/contact_geometry.h"
 #include "tests/support/scenes.h"
 
 namespace passung {
@@ -11,10 +12,12 @@ namespace {
 constexpr double kAtRest = 0.4, kSliding = 0.3;
 
 /// A body over a plate whose top is z = 0, tilted as a whole by `world`.
-scene::SceneSpec onPlate(const shape::Shape& held, double height, const Pose& world = Pose{}) {
+scene::SceneSpec onPlate(scene::Geometry geometry, const shape::Shape& held, double height,
+                         const Pose& world = Pose{}) {
     scene::SceneSpec spec =
         test::scene(held, world * Pose{Quat::Identity(), {0, 0, height}}, shape::Box{0.1, 0.1, 0.02},
                     world * Pose{Quat::Identity(), {0, 0, -0.01}}, scene::ContactMethod::GodObjectHeuristic);
+    spec.contact.geometry = geometry;
     spec.contact.stiffness = 1000.0;
     spec.contact.rotational_stiffness = 2.0;
     for (auto& part : spec.parts) {
@@ -24,13 +27,18 @@ scene::SceneSpec onPlate(const shape::Shape& held, double height, const Pose& wo
     return spec;
 }
 
+class FrictionInTheTick : public testing::TestWithParam<scene::Geometry> {};
+
+INSTANTIATE_TEST_SUITE_P(From, FrictionInTheTick, testing::Values(scene::Geometry::Field, scene::Geometry::Surface),
+                         [](const auto& made) { return std::string(scene::geometryName(made.param)); });
+
 const Pose kTilted{Quat(Eigen::AngleAxisd(0.9, Vec3(1, 2, 3).normalized())), {0.03, -0.01, 0.02}};
 
-TEST(FrictionInTheTick, KeepsTheConeAtRestAndInSlip) {
+TEST_P(FrictionInTheTick, KeepsTheConeAtRestAndInSlip) {
     // Truth: closed form (A10): |F_t| grows to μ_s F_n before the proxy moves, and is μ_d F_n while it slides; mark 1
     // %. A block on a plate, straight and turned; pressed by 1 mm and dragged by 1 µm a tick.
     for (const Pose& world : {Pose{}, kTilted}) {
-        auto spec = onPlate(shape::Box{0.02, 0.02, 0.01}, 0.005, world);
+        auto spec = onPlate(GetParam(), shape::Box{0.02, 0.02, 0.01}, 0.005, world);
         test::Bench bench(spec);
         Pose X = spec.parts[0].X_WP;
         const Vec3 n = world.q * Vec3::UnitZ(), t = world.q * Vec3(0.8, 0.6, 0.0);
@@ -61,11 +69,11 @@ TEST(FrictionInTheTick, KeepsTheConeAtRestAndInSlip) {
     }
 }
 
-TEST(FrictionInTheTick, HoldsATurnedDiscByTwoThirds) {
+TEST_P(FrictionInTheTick, HoldsATurnedDiscByTwoThirds) {
     // Truth: closed form (A10): T = 2/3 μ_d F_n R in slip; mark 5 %.
     constexpr double R = 0.01;
     for (const Pose& world : {Pose{}, kTilted}) {
-        auto spec = onPlate(shape::Cylinder{2 * R, 0.02}, 0.01, world);
+        auto spec = onPlate(GetParam(), shape::Cylinder{2 * R, 0.02}, 0.01, world);
         test::Bench bench(spec);
         Pose X = spec.parts[0].X_WP;
         const Vec3 n = world.q * Vec3::UnitZ();
@@ -87,9 +95,9 @@ TEST(FrictionInTheTick, HoldsATurnedDiscByTwoThirds) {
     }
 }
 
-TEST(FrictionInTheTick, DoesNotCreepAtRestNorKnowFrictionWhereNoneIsNamed) {
+TEST_P(FrictionInTheTick, DoesNotCreepAtRestNorKnowFrictionWhereNoneIsNamed) {
     // Truth: invariant. Within the cone the proxy stays where it is; with one smooth side it slides at once.
-    auto spec = onPlate(shape::Box{0.02, 0.02, 0.01}, 0.005, kTilted);
+    auto spec = onPlate(GetParam(), shape::Box{0.02, 0.02, 0.01}, 0.005, kTilted);
     const Vec3 n = kTilted.q * Vec3::UnitZ(), t = kTilted.q * Vec3::UnitX();
     Pose X = spec.parts[0].X_WP;
     X.p += -1e-3 * n + 0.2e-3 * t;

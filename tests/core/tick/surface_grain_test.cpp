@@ -68,6 +68,19 @@ struct Facets {
 };
 void PrintTo(const Facets& facets, std::ostream* out) { *out << facets.name; }
 
+TEST(SurfaceGrain, APathAlongWhichItStoodStillIsFollowed) {
+    // Truth: as below. A peg that comes back over the end of its bore: a plane of two edges that passed each other
+    // within the gap leaned against its way, and it stood still for 40 ticks and more.
+    const test::TempFolder folder;
+    const auto made = test::dShaft(151);
+    Judge judge(judgedOf(made, folder / "parts", true));
+    const Seen seen =
+        judge.follow([&](int k) { return made.hand(1e-3 * k); }, 1200, "path 51", ContactMethod::GodObject);
+    print("past the end of its bore", seen);
+    EXPECT_LE(seen.off, 1) << seen.worst;
+    EXPECT_EQ(seen.catches, 0);
+}
+
 class FacetsOf : public testing::TestWithParam<Facets> {
 protected:
     Seen follow(bool gap, ContactMethod method = ContactMethod::GodObject) {
