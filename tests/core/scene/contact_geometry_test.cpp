@@ -50,7 +50,8 @@ TEST(ContactGeometry, AutoIsTheTruestThatAllPairsCanHave) {
         EXPECT_EQ(of(sceneOf({shaped(true), shaped(false), meshed(false)}, method)), Geometry::Surface);
         EXPECT_EQ(of(sceneOf({shaped(true, 0.3), shaped(false, 0.3)}, method)), Geometry::Surface);
         EXPECT_EQ(of(sceneOf({meshed(true, 0.3), meshed(false, 0.3)}, method)), Geometry::Surface);
-        EXPECT_EQ(of(sceneOf({shaped(true, 0.3), shaped(false)}, method)), Geometry::ClosedForm) << "one part is smooth";
+        EXPECT_EQ(of(sceneOf({shaped(true, 0.3), shaped(false)}, method)), Geometry::ClosedForm)
+            << "one part is smooth";
         EXPECT_EQ(of(sceneOf({shaped(true, 0.3), meshed(false), shaped(false, 0.3)}, method)), Geometry::Surface);
         EXPECT_EQ(of(sceneOf({shaped(true, 0.3), shaped(false, 0.3)}, method, 20.0)), Geometry::Field);
         EXPECT_EQ(of(sceneOf({meshed(true), meshed(false)}, method, 20.0)), Geometry::Field);
