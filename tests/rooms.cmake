@@ -82,6 +82,7 @@ set(libraries
   "Bullet   | ^(btBullet|Bullet)               | tests                                  | cpp"
   "OpenVDB  | ^openvdb/                        | tests                                  | cpp"
   "Qt       | ^Q[A-Zt]                         | ui/experimenter ui/participant ui/window tests | any"
+  "spnav    | ^spnav[.]h$                      | tests                                   | cpp"
   "XCB      | ^xcb/                            | ui/window tests                        | cpp"
   "gbench   | ^benchmark/                      | tests                                  | cpp"
   "gtest    | ^g(test|mock)/                   | tests                                  | any"
