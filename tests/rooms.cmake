@@ -75,6 +75,8 @@ set(libraries
   "libpqxx  | ^pqxx/                           | study/store/postgres tests             | cpp"
   "FCL      | ^fcl/                            | analysis/truth tests                   | cpp"
   "Boost.Math | ^boost/math/                     | analysis/stats tests                   | cpp"
+  "Beast    | ^boost/(asio|beast)/             | tests                                  | cpp"
+  "nlohmann | ^nlohmann/                       | tests                                  | any"
   "spdlog   | ^spdlog/                         | study/run tests                        | cpp"
   "CLI11    | ^CLI/                            | ui/cli tests                           | cpp"
   "OMPL     | ^ompl/                           | core/path                              | cpp"
