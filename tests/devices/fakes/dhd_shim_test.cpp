@@ -281,9 +281,10 @@ TEST(DhdShim, SetsTrapsOfUnits) {
     EXPECT_DOUBLE_EQ(dhd.position(result)[2], 50.0);
     block->millinewtonmetres = true;
     dhd.enableForce(1, 0);
-    dhd.set(1, 0, 0, 0.2, 0, 0, 0, 0);
-    EXPECT_DOUBLE_EQ(block->devices[0].commands.last().felt[0], 1.0);
-    EXPECT_DOUBLE_EQ(block->devices[0].commands.last().felt[3], 0.0002);
+    dhd.set(1, 2, 3, 0.2, 0.4, 0.6, 5, 0);
+    const DhdCommand command = block->devices[0].commands.last();
+    const double expected[7] = {1, 2, 3, 0.0002, 0.0004, 0.0006, 5};
+    for (int i = 0; i < 7; ++i) EXPECT_DOUBLE_EQ(command.felt[i], expected[i]);
 }
 
 TEST(DhdShim, AsksForTheExpertModeWhereTheVendorDoes) {

@@ -77,6 +77,8 @@ void SpaceMouseDaemon::start() {
             return asked || listens;
         },
         [&] { return listens; });
+    // Its loop runs, with all that it does before, when it answers.
+    SpaceMouseTap(socket()).askProtocol1();
 }
 
 void SpaceMouseDaemon::end(int signal) {
@@ -129,6 +131,8 @@ std::string SpaceMouseTap::take(std::size_t count) {
         [&] { return ended || bytes.size() == count; });
     return bytes;
 }
+
+bool SpaceMouseTap::hasMore() const { return readable(socket_); }
 
 std::optional<SpaceMouseTap::Words> SpaceMouseTap::frame() {
     const std::string bytes = take(sizeof(Words));

@@ -60,6 +60,8 @@ public:
     void send(const void* bytes, std::size_t count);
     /// Exactly so many bytes; fewer if the daemon hangs up.
     std::string take(std::size_t count);
+    /// Comes anything within a slice?
+    bool hasMore() const;
     /// One frame of 32 bytes; empty if the daemon has hung up.
     std::optional<Words> frame();
     /// Asks for protocol 1 and returns what comes back in the next four bytes.

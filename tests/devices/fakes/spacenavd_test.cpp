@@ -282,6 +282,18 @@ TEST_F(SpacenavdSocket, SaysNothingWhenTheMouseIsPulledInMotionAndStillNamesIt) 
     }
 }
 
+TEST_F(SpacenavdSocket, BringsLateWhatCameWhileItHung) {
+    // Truth: invariant: a stopped process sends nothing, and what the line kept comes when it goes on.
+    SpaceMouseDaemon daemon(SerialMouse::Model::Spaceball);
+    SpaceMouseTap tap(daemon.socket());
+    ASSERT_EQ(tap.askProtocol1(), 0x7faa5501u);
+    daemon.hang();
+    daemon.mouse().move({30, 0, 0, 0, 0, 0});
+    EXPECT_FALSE(tap.hasMore());
+    daemon.goOn();
+    EXPECT_EQ(countsOf(tap.frame().value()), (Counts{30, 0, 0, 0, 0, 0}));
+}
+
 TEST_F(SpacenavdSocket, FindsTheMouseAgainAfterARestart) {
     // Truth: independent program (spacenavd 1.1-1 of Debian).
     SpaceMouseDaemon daemon(SerialMouse::Model::Magellan);
