@@ -1,20 +1,10 @@
 #include "tests/devices/fakes/web_socket_server.h"
 
-#include <arpa/inet.h>
-#include <fcntl.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <openssl/evp.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
-#include <stdexcept>
-#include <vector>
 
 namespace passung::fake {
 namespace {
@@ -63,70 +53,24 @@ std::string headerOf(const std::string& request, std::string name) {
 
 }  // namespace
 
-WebSocketServer::WebSocketServer(WebSocketHandler& handler) : handler_(handler) {
-    listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    if (bind(listener_, reinterpret_cast<sockaddr*>(&address), size) != 0 || listen(listener_, 8) != 0 ||
-        getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size) != 0 || pipe2(wake_, O_CLOEXEC) != 0)
-        throw std::runtime_error("no port on the loop-back");
-    port_ = ntohs(address.sin_port);
-    thread_ = std::thread([this] { serve(); });
-}
+WebSocketServer::WebSocketServer(WebSocketHandler& handler) : handler_(handler), server_(*this) {}
 
-WebSocketServer::~WebSocketServer() {
-    ::close(wake_[1]);
-    thread_.join();
-    while (!clients_.empty()) forget(clients_.begin()->first);
-    ::close(wake_[0]);
-    ::close(listener_);
-}
+void WebSocketServer::connected(int client) { clients_[client] = {}; }
 
-void WebSocketServer::serve() {
-    for (;;) {
-        std::vector<pollfd> entries{{wake_[0], POLLIN, 0}, {listener_, POLLIN, 0}};
-        std::vector<int> ids;
-        {
-            const std::lock_guard lock(mutex_);
-            for (const auto& [id, client] : clients_) {
-                entries.push_back({client.socket, POLLIN, 0});
-                ids.push_back(id);
-            }
-        }
-        // A client that was dropped meanwhile is looked for anew within a slice.
-        if (poll(entries.data(), entries.size(), 20) < 0) continue;
-        if (entries[0].revents != 0) return;
-        const std::lock_guard lock(mutex_);
-        for (std::size_t i = 0; i < ids.size(); ++i) {
-            if (entries[i + 2].revents != 0) hear(ids[i]);
-        }
-        if (entries[1].revents != 0) accept();
-    }
-}
-
-void WebSocketServer::accept() {
-    const int socket = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
-    if (socket < 0) return;
-    const int on = 1;
-    setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    clients_[next_++].socket = socket;
-}
-
-void WebSocketServer::hear(int id) {
-    const auto found = clients_.find(id);
-    if (found == clients_.end()) return;
-    std::array<char, 65536> bytes{};
-    const ssize_t count = recv(found->second.socket, bytes.data(), bytes.size(), MSG_DONTWAIT);
-    if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
-    if (count <= 0) return forget(id);
-    found->second.bytes.append(bytes.data(), static_cast<std::size_t>(count));
-    if (!found->second.upgraded && !upgrade(id, found->second)) return;
+void WebSocketServer::heard(int id, const std::string& bytes) {
+    Client& newest = clients_.at(id);
+    newest.bytes += bytes;
+    if (!newest.upgraded && !upgrade(id, newest)) return;
     // A handler may drop the client whose message it hears.
     for (auto client = clients_.find(id); client != clients_.end() && takeFrame(id, client->second);
          client = clients_.find(id)) {
     }
+}
+
+void WebSocketServer::gone(int client) {
+    const bool was_open = clients_.at(client).upgraded;
+    clients_.erase(client);
+    if (was_open) handler_.closed(client);
 }
 
 bool WebSocketServer::upgrade(int id, Client& client) {
@@ -137,7 +81,7 @@ bool WebSocketServer::upgrade(int id, Client& client) {
     const std::string key = headerOf(request, "Sec-WebSocket-Key");
     if (request.rfind("GET ", 0) != 0 || key.empty() || headerOf(request, "Sec-WebSocket-Version") != "13") {
         sendRaw(id, "HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\nConnection: close\r\n\r\n");
-        forget(id);
+        server_.drop(id);
         return false;
     }
     sendRaw(id,
@@ -166,7 +110,7 @@ bool WebSocketServer::takeFrame(int id, Client& client) {
     if (!masked || !known || !in_order || (byte(0) & 0x70) != 0 || (opcode >= kClose && (!last || size > 125))) {
         ++violations_;
         close(id, 1002);
-        forget(id);
+        server_.drop(id);
         return false;
     }
     if (client.bytes.size() < head + 4 + size) return false;
@@ -180,7 +124,7 @@ bool WebSocketServer::takeFrame(int id, Client& client) {
         ++pongs_;
     } else if (opcode == kClose) {
         sendRaw(id, frameOf(kClose, true, payload));
-        forget(id);
+        server_.drop(id);
         return false;
     } else {
         client.message += payload;
@@ -192,15 +136,6 @@ bool WebSocketServer::takeFrame(int id, Client& client) {
         }
     }
     return true;
-}
-
-void WebSocketServer::forget(int id) {
-    const auto found = clients_.find(id);
-    if (found == clients_.end()) return;
-    const bool was_open = found->second.upgraded;
-    ::close(found->second.socket);
-    clients_.erase(found);
-    if (was_open) handler_.closed(id);
 }
 
 std::string WebSocketServer::frame(const std::string& text) { return frameOf(kText, true, text); }
@@ -218,15 +153,7 @@ void WebSocketServer::send(int client, const std::string& text, std::size_t frag
     sendRaw(client, bytes);
 }
 
-void WebSocketServer::sendRaw(int client, const std::string& bytes) {
-    const std::lock_guard lock(mutex_);
-    const auto found = clients_.find(client);
-    if (found == clients_.end()) return;
-    // Who does not read is not waited for for ever: what the system does not take within a second is lost.
-    const timeval limit{1, 0};
-    setsockopt(found->second.socket, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
-    ::send(found->second.socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-}
+void WebSocketServer::sendRaw(int client, const std::string& bytes) { server_.send(client, bytes); }
 
 void WebSocketServer::ping(int client, const std::string& text) { sendRaw(client, frameOf(kPing, true, text)); }
 
@@ -234,9 +161,6 @@ void WebSocketServer::close(int client, int code) {
     sendRaw(client, frameOf(kClose, true, {static_cast<char>(code >> 8), static_cast<char>(code & 0xff)}));
 }
 
-void WebSocketServer::drop(int client) {
-    const std::lock_guard lock(mutex_);
-    forget(client);
-}
+void WebSocketServer::drop(int client) { server_.drop(client); }
 
 }  // namespace passung::fake

@@ -3,9 +3,9 @@
 #include <atomic>
 #include <cstdint>
 #include <map>
-#include <mutex>
 #include <string>
-#include <thread>
+
+#include "tests/devices/fakes/loopback_server.h"
 
 namespace passung::fake {
 
@@ -22,14 +22,13 @@ public:
 
 /// A server of RFC 6455 on a port of the loop-back that the system picks: text messages, fragments, ping, close. It can
 /// also break the rules on purpose. It keeps no time.
-class WebSocketServer {
+class WebSocketServer final : LoopbackHandler {
 public:
     explicit WebSocketServer(WebSocketHandler& handler);
-    ~WebSocketServer();
     WebSocketServer(const WebSocketServer&) = delete;
     WebSocketServer& operator=(const WebSocketServer&) = delete;
 
-    int port() const noexcept { return port_; }
+    int port() const noexcept { return server_.port(); }
 
     /// One message, in frames of at most `fragment` bytes (0: in one).
     void send(int client, const std::string& text, std::size_t fragment = 0);
@@ -49,30 +48,23 @@ public:
 
 private:
     struct Client {
-        int socket = -1;
         bool upgraded = false;
         std::string bytes;    // not yet understood
         std::string message;  // the fragments so far
         bool in_message = false;
     };
 
-    void serve();
-    void accept();
-    void hear(int client);
+    void connected(int client) override;
+    void heard(int client, const std::string& bytes) override;
+    void gone(int client) override;
     bool upgrade(int id, Client& client);
     bool takeFrame(int id, Client& client);
-    void forget(int id);
 
     WebSocketHandler& handler_;
-    int listener_ = -1;
-    int wake_[2] = {-1, -1};
-    int port_ = 0;
-    int next_ = 1;
     std::map<int, Client> clients_;
-    std::recursive_mutex mutex_;  // the handler, called under it, sends
     std::atomic<std::int64_t> violations_ = 0;
     std::atomic<std::int64_t> pongs_ = 0;
-    std::thread thread_;
+    LoopbackServer server_;  // last, as its thread calls what stands above
 };
 
 }  // namespace passung::fake
