@@ -1,11 +1,6 @@
 #include "tests/devices/fakes/serial_mouse.h"
 
-#include <fcntl.h>
-#include <termios.h>
-#include <unistd.h>
-
 #include <bit>
-#include <cstdlib>
 #include <stdexcept>
 #include <utility>
 
@@ -49,41 +44,23 @@ std::string escaped(const std::string& bytes) {
 
 }  // namespace
 
-SerialMouse::SerialMouse(Model model, std::filesystem::path link) : model_(model), link_(std::move(link)) { plug(); }
-
-SerialMouse::~SerialMouse() { unplug(); }
+SerialMouse::SerialMouse(Model model, std::filesystem::path link) : model_(model), line_(std::move(link)) {}
 
 void SerialMouse::plug() {
-    unplug();
-    master_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK);
-    std::array<char, 64> name{};
-    if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
-        ptsname_r(master_, name.data(), name.size()) != 0)
-        throw std::runtime_error("no pseudo-terminal");
-    slave_ = open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-    termios line{};
-    if (slave_ < 0 || tcgetattr(slave_, &line) != 0) throw std::runtime_error("pseudo-terminal cannot be opened");
-    cfmakeraw(&line);
-    tcsetattr(slave_, TCSANOW, &line);
-    std::filesystem::remove(link_);
-    std::filesystem::create_symlink(name.data(), link_);
+    line_.plug();
     asked_.clear();
 }
 
 void SerialMouse::unplug() {
-    if (slave_ >= 0) close(slave_);
-    if (master_ >= 0) close(master_);
-    slave_ = master_ = -1;
+    line_.unplug();
     served_ = false;
     keys_ = 0;
 }
 
 bool SerialMouse::answer() {
-    if (!readable(master_)) return false;
-    std::array<char, 256> bytes{};
-    const ssize_t count = read(master_, bytes.data(), bytes.size());
-    if (count <= 0) return false;
-    asked_.append(bytes.data(), static_cast<std::size_t>(count));
+    const std::string bytes = line_.take(kSliceMs);
+    if (bytes.empty()) return false;
+    asked_ += bytes;
     for (std::size_t end; (end = asked_.find('\r')) != std::string::npos; asked_.erase(0, end + 1)) {
         const std::string command = asked_.substr(0, end);
         if (model_ == Model::Spaceball && command == "@RESET") sendRaw(kSpaceballBanner);
@@ -140,8 +117,7 @@ void SerialMouse::release(int button) {
 }
 
 void SerialMouse::sendRaw(const std::string& bytes) {
-    if (write(master_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
-        throw std::runtime_error("pseudo-terminal does not take a frame");
+    if (!line_.give(bytes)) throw std::runtime_error("pseudo-terminal does not take a frame");
 }
 
 }  // namespace passung::fake

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/devices/fakes/pseudo_terminal.h"
+
 namespace passung::fake {
 
 /// A serial mouse of six degrees on a pseudo-terminal, as spacenavd 1.1 finds it through `serial =` of its file.
@@ -25,7 +27,6 @@ public:
 
     /// `link` is a name for the terminal, which stays when the mouse is plugged in anew.
     SerialMouse(Model model, std::filesystem::path link);
-    ~SerialMouse();
     SerialMouse(const SerialMouse&) = delete;
     SerialMouse& operator=(const SerialMouse&) = delete;
 
@@ -56,9 +57,7 @@ public:
 
 private:
     Model model_;
-    std::filesystem::path link_;
-    int master_ = -1;  // the mouse's end
-    int slave_ = -1;   // kept open, so that the terminal outlives a daemon
+    PseudoTerminal line_;
     std::string asked_;
     bool served_ = false;
     unsigned keys_ = 0;
