@@ -68,7 +68,10 @@ DhdDevice* deviceOf(char id) {
         return nullptr;
     }
     const DhdFault fault = device.readings >= device.fault_at_reading ? device.fault.load() : DhdFault::None;
-    if (fault == DhdFault::Crash) std::raise(SIGSEGV);
+    if (fault == DhdFault::Crash) {
+        std::signal(SIGSEGV, SIG_DFL);  // whoever watches over this process
+        std::raise(SIGSEGV);
+    }
     while (fault == DhdFault::Hang && !block->released) usleep(1000);
     if (!device.plugged || fault == DhdFault::Unplugged) {
         fail(kCommunication);

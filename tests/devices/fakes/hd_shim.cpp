@@ -315,7 +315,10 @@ EXPORT void hdBeginFrame(HHD handle) {
     Frame& frame = frames[handle];
     if (frame.open) return fail(kIllegalBegin);
     const HdFault fault = faultOf(*device);
-    if (fault == HdFault::Crash) raise(SIGSEGV);
+    if (fault == HdFault::Crash) {
+        signal(SIGSEGV, SIG_DFL);  // whoever watches over this process
+        raise(SIGSEGV);
+    }
     if (!device->plugged || fault == HdFault::Unplugged) return fail(kCommunication);
     if (fault == HdFault::WarmMotors) fail(kWarmMotors);
     if (fault != HdFault::Frozen) kept[handle] = device->hand.load();

@@ -219,11 +219,11 @@ TEST(HdShim, KeepsItsErrorsOnAStackWithTheNewestFirst) {
 TEST(HdShim, CallsBackOncePerTickInAThreadOfItsOwn) {
     // Truth: invariant of virtual time: as many calls as steps, none between.
     SharedBlock<HdBlock> block(fake::kHdVariable);
+    std::thread::id thread;
+    int calls = 0;
     Hd hd;
     ASSERT_EQ(hd.init(nullptr), 0u);
     hd.enable(kOutput);
-    std::thread::id thread;
-    int calls = 0;
     hd.start([&] {
         thread = std::this_thread::get_id();
         ++calls;
@@ -254,6 +254,7 @@ TEST(HdShim, CallsBackByTheClockWhereItIsNotStepped) {
     SharedBlock<HdBlock> block(fake::kHdVariable);
     block->stepped = false;
     block->granted_rate = 500;
+    std::atomic<int> calls = 0;  // outlives the scheduler, which ends with hd
     Hd hd;
     ASSERT_EQ(hd.init(nullptr), 0u);
     const auto set_rate = hd.library.get<void(unsigned long)>("hdSetSchedulerRate");
@@ -262,7 +263,6 @@ TEST(HdShim, CallsBackByTheClockWhereItIsNotStepped) {
     set_rate(500);
     EXPECT_EQ(hd.error().code, 0u);
     EXPECT_EQ(hd.numbers(kRate)[0], 500.0);
-    std::atomic<int> calls = 0;
     hd.start([&] { ++calls; });
     fake::waitFor(
         "calls", [] { return fake::readable(-1, 1); }, [&] { return calls >= 20; });
@@ -308,10 +308,10 @@ TEST(HdShim, FailsAsItIsToldFromTheTickOnThatItIsTold) {
     // Truth: invariant.
     SharedBlock<HdBlock> block(fake::kHdVariable);
     HdDevice& device = block->devices[0];
-    Hd hd;
-    ASSERT_EQ(hd.init(nullptr), 0u);
     double x = 0, y = 0;
     unsigned error = 0;
+    Hd hd;
+    ASSERT_EQ(hd.init(nullptr), 0u);
     hd.start([&] {
         hd.begin(0);
         const auto position = hd.numbers(kPosition);
