@@ -183,9 +183,12 @@ TEST(DhdShim, ReturnsPositiveNotesThatAreNoErrors) {
     const Dhd dhd;
     ASSERT_EQ(dhd.openId(0), 0);
     block->call_result = 1;
-    int result = 0;
-    EXPECT_EQ(dhd.position(result), (std::array<double, 3>{}));
-    EXPECT_EQ(result, 1);
+    double x, y, z, frame[3][3];
+    EXPECT_EQ(dhd.pose(&x, &y, &z, frame, 0), 1);
+    EXPECT_EQ(x, 0.0);
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) EXPECT_EQ(frame[i][j], i == j ? 1.0 : 0.0) << "a hand at rest is not turned";
+    }
 }
 
 TEST(DhdShim, TellsTwoDevicesApartBySerialHoweverTheyAreCounted) {

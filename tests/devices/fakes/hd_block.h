@@ -1,14 +1,13 @@
 #pragma once
 
 #include <semaphore.h>
-#include <time.h>
 
 #include <array>
 #include <atomic>
 #include <cstdint>
 
 #include "tests/devices/fakes/shared_block.h"
-#include "tests/devices/fakes/waiting.h"
+#include "tests/devices/fakes/stepping.h"
 
 namespace passung::fake {
 
@@ -77,25 +76,5 @@ struct HdBlock {
         sem_init(&done, 1, 0);
     }
 };
-
-/// Waits for a semaphore, at most a slice.
-inline bool taken(sem_t& semaphore) {
-    timespec end{};
-    clock_gettime(CLOCK_REALTIME, &end);
-    end.tv_nsec += kSliceMs * 1000000L;
-    end.tv_sec += end.tv_nsec / 1000000000L;
-    end.tv_nsec %= 1000000000L;
-    return sem_timedwait(&semaphore, &end) == 0;
-}
-
-/// Lets the scheduler make so many ticks and waits for the end of each: virtual time.
-inline void step(HdBlock& block, int ticks = 1) {
-    for (int i = 0; i < ticks; ++i) {
-        sem_post(&block.go);
-        bool over = false;
-        waitFor(
-            "a tick of the scheduler", [&] { return over = taken(block.done); }, [&] { return over; });
-    }
-}
 
 }  // namespace passung::fake

@@ -27,6 +27,7 @@ class SharedValue {
     static constexpr std::size_t kNumbers = sizeof(Value) / sizeof(double);
 
 public:
+    SharedValue() noexcept { store(Value{}); }
     void store(const Value& value) noexcept {
         const auto numbers = std::bit_cast<std::array<double, kNumbers>>(value);
         const auto now = version_.load(std::memory_order_relaxed);
