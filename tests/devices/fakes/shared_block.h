@@ -8,6 +8,7 @@
 #include <atomic>
 #include <bit>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <new>
 #include <stdexcept>
@@ -69,6 +70,9 @@ private:
     std::array<SharedValue<Value>, kRows> rows_{};
 };
 
+/// The variable that says where the block lies in the process that has made it.
+inline std::string placeOf(const char* variable) { return std::string(variable) + "_PLACE"; }
+
 /// The test's side: makes the block in a file and names that in an environment variable, which the shim reads.
 template <typename Block>
 class SharedBlock {
@@ -82,9 +86,13 @@ public:
         if (memory_ == MAP_FAILED) throw std::runtime_error("no memory for a shared block");
         block_ = new (memory_) Block;
         setenv(variable, path.c_str(), 1);
+        std::array<char, 64> place{};
+        std::snprintf(place.data(), place.size(), "%ld %p", static_cast<long>(getpid()), memory_);
+        setenv(placeOf(variable).c_str(), place.data(), 1);
     }
     ~SharedBlock() {
         unsetenv(variable_);
+        unsetenv(placeOf(variable_).c_str());
         munmap(memory_, sizeof(Block));
     }
     SharedBlock(const SharedBlock&) = delete;
@@ -100,9 +108,15 @@ private:
     Block* block_ = nullptr;
 };
 
-/// The shim's side: where the block of the variable lies; null if there is none.
+/// The shim's side: where the block of the variable lies; null if there is none. In the process of the test that is the
+/// same place, so that ThreadSanitizer sees what its semaphores order.
 template <typename Block>
-Block* findBlock(const char* variable) noexcept {
+Block* findBlock(const char* variable) {
+    long process = 0;
+    void* place = nullptr;
+    const char* text = std::getenv(placeOf(variable).c_str());
+    if (text != nullptr && std::sscanf(text, "%ld %p", &process, &place) == 2 && process == static_cast<long>(getpid()))
+        return static_cast<Block*>(place);
     const char* path = std::getenv(variable);
     const int file = path == nullptr ? -1 : open(path, O_RDWR | O_CLOEXEC);
     if (file < 0) return nullptr;
