@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <sys/wait.h>
@@ -37,7 +38,8 @@ int connected(const std::filesystem::path& path) {
     if (log < 0 || chdir(folder.c_str()) != 0) _exit(126);
     dup2(log, STDOUT_FILENO);
     dup2(log, STDERR_FILENO);
-    setenv("DISPLAY", ":9999", 1);  // where no X server is: unset, the first one of the machine would be asked
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // no daemon outlives a test that is killed
+    setenv("DISPLAY", ":9999", 1);     // where no X server is: unset, the first one of the machine would be asked
     execl(kProgram, kProgram, "-d", "-v", "-c", "spnavrc", nullptr);
     _exit(127);
 }
