@@ -588,12 +588,11 @@ const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH, const motion::Pull* p
         if (phase_ == Phase::Waking && !wakeAll()) tick_.suspended = true;
         if (phase_ != Phase::Checking) continue;
         const Checked checked = check();
-        if (checked == Checked::Spent) {
+        // Another motion with friction takes long.
+        if (checked == Checked::Spent || (checked == Checked::Violated && !friction_.empty() && spent())) {
             tick_.suspended = true;
         } else if (checked == Checked::Astray) {
             if (!shorten()) break;
-        } else if (checked == Checked::Violated && !friction_.empty() && spent()) {
-            tick_.suspended = true;  // another motion with friction takes long
         } else if (checked == Checked::Violated ||
                    (ghosts_ < kMostGhosts && !tick_.waits && 2 * tick_.work < budget_ && dropsGhosts())) {
             if (tryAgain(checked == Checked::Violated)) continue;

@@ -90,8 +90,8 @@ bool lieAlong(const HullPair& pair, const Placement& X, const Vec3& n) noexcept 
 
 std::size_t findPieces(const HullPair& pair, const Placement& X, const Vec3& n, double within, int fineness,
                        std::span<motion::TouchingPiece> pieces) noexcept {
-    const auto [t1, t2] = motion::tangentsOf(n);
-    const Plane plane{n, t1, t2};
+    const auto tangents = motion::tangentsOf(n);
+    const Plane plane{n, tangents.first, tangents.second};
     SeenFace held = seenFace(pair.held, pair.of_held, X, plane);
     const SeenFace obstacle = seenFace(pair.obstacle, pair.of_obstacle, {}, plane);
     Polygon& both = held.outline;
@@ -107,7 +107,7 @@ std::size_t findPieces(const HullPair& pair, const Placement& X, const Vec3& n, 
     const auto write = [&](const Point& x, double area) {
         if (!(area > 0.0) || count == pieces.size()) return;
         const double height = obstacle.at + obstacle.slope.dot(x);
-        pieces[count++] = {.centre = x.x() * t1 + x.y() * t2 + height * n, .normal = n, .area = area};
+        pieces[count++] = {.centre = x.x() * plane.t1 + x.y() * plane.t2 + height * n, .normal = n, .area = area};
     };
     const Point middle = both.middle();
     if (fineness <= 0) {

@@ -52,13 +52,16 @@ SurfaceFollow surfaceFollow(const HandModel& model) {
     // Those that rest are one body, in the world; then those in other hands.
     std::vector<surface::SurfaceBody> bodies;
     if (model.still_surface != nullptr) {
-        surface::SurfaceBody& still = bodies.emplace_back(model.still_surface);
+        surface::SurfaceBody& still = bodies.emplace_back();
+        still.tree = model.still_surface;
         for (std::size_t i = 0; !model.friction.empty() && i < model.resting.size(); ++i)
             still.rubbing.push_back({model.first_triangles[i], model.friction[model.resting[i]]});
     }
     for (const std::uint32_t i : model.moving) {
         const Body& body = model.bodies[model.obstacles[i].body];
-        surface::SurfaceBody& moving = bodies.emplace_back(body.surface, body.X_WP_start);
+        surface::SurfaceBody& moving = bodies.emplace_back();
+        moving.tree = body.surface;
+        moving.X_WB = body.X_WP_start;
         if (!model.friction.empty()) moving.rubbing.push_back({0, model.friction[i]});
     }
     follow.surface.emplace(

@@ -115,7 +115,7 @@ int open(int id) {
     DhdDevice& device = block->devices[static_cast<std::size_t>(placeOf(id))];
     if (!device.plugged) return fail(kNoDeviceFound);
     device.opened = true;
-    current = id;
+    current = static_cast<unsigned char>(id);
     return id;
 }
 
@@ -192,7 +192,7 @@ EXPORT int dhdClose(char id) {
 
 EXPORT int dhdSetDevice(char id) {
     if (block == nullptr || id < 0 || id >= block->present) return fail(kInvalidIndex);
-    current = id;
+    current = static_cast<unsigned char>(id);
     return 0;
 }
 

@@ -59,7 +59,7 @@ std::string named(const std::string& name) { return big(static_cast<std::int32_t
 
 }  // namespace
 
-VrpnServer::VrpnServer(std::string device, std::string version)
+VrpnServer::VrpnServer(std::string device, const std::string& version)
     : device_(std::move(device)), cookie_("vrpn: ver. " + version + "  0"), server_(*this) {
     cookie_.resize(kCookie, '\0');
 }

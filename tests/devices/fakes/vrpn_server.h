@@ -43,7 +43,7 @@ struct VrpnMessage {
 /// by itself.
 class VrpnServer final : LoopbackHandler {
 public:
-    explicit VrpnServer(std::string device = "Phantom0", std::string version = "07.38");
+    explicit VrpnServer(std::string device = "Phantom0", const std::string& version = "07.38");
     ~VrpnServer() = default;
     VrpnServer(const VrpnServer&) = delete;
     VrpnServer& operator=(const VrpnServer&) = delete;
