@@ -49,6 +49,7 @@ set(rooms
   "analysis/truth      | ${contact_rooms} core/tick core/query"
   "analysis/stats      | core/base"
   "analysis/export     | core/base ${plan_rooms} study/protocol study/store analysis/stats"
+  "analysis/report     | core/base ${plan_rooms} study/store analysis/export"
   "study/feasible      | ${contact_rooms} core/path ${plan_rooms} analysis/truth"
   "study/run           | ${core_rooms} devices ${study_rooms} study/session study/store analysis/truth"
   "analysis/power      | core/base ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
@@ -88,7 +89,7 @@ set(libraries
   "XCB      | ^xcb/                            | ui/window tests                        | cpp"
   "gbench   | ^benchmark/                      | tests                                  | cpp"
   "gtest    | ^g(test|mock)/                   | tests                                  | any"
-  "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|spawn|signal|time|dlfcn|termios|malloc|pwd|grp)[.]h$ | core/base core/loop devices study/store study/run ui tests | cpp")
+  "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|spawn|signal|time|dlfcn|termios|malloc|pwd|grp)[.]h$ | core/base core/loop devices study/store study/run analysis/report ui tests | cpp")
 
 # The tick: a positive list. What is not here allocates, locks, throws, waits or talks to the system.
 set(tick_standard_headers algorithm array atomic bit bitset cassert cfloat climits cmath compare concepts cstddef

@@ -119,17 +119,6 @@ Kept keptBy(const StudyData& study, const store::AnalysisRow& analysis, const Fa
     return kept;
 }
 
-/// An analysis where its values are: of a measure in a block, or of a staircase's thresholds.
-struct PlannedTest {
-    const store::AnalysisRow* analysis;
-    Factors factors;
-    std::string block;  // empty: thresholds
-    std::string value;  // its column
-    Kept kept;
-
-    bool ofThresholds() const { return analysis->outcome.empty(); }
-};
-
 ColumnsOf<store::AnalysisRow> analysisColumns() {
     using store::AnalysisRow;
     return {protocolColumn<AnalysisRow>(),
@@ -143,31 +132,32 @@ ColumnsOf<PlannedTest> plannedTestColumns() {
     ColumnsOf<PlannedTest> columns;
     append(columns, analysisColumns(),
            [](const PlannedTest& planned) -> const store::AnalysisRow& { return *planned.analysis; });
-    append(
-        columns,
-        {{"block", "Block whose trials are analysed; NA: of a staircase", "text", &PlannedTest::block},
-         {"factors", "Factors, parted by ;", "text",
-          [](const PlannedTest& planned) { return joined(planned.factors.all, ";"); }},
-         {"test", "Test that the protocol names", "text",
-          [](const PlannedTest& planned) { return planned.analysis->test; }},
-         {"file", "File that has the values: its rows of this protocol and block, or staircase", "text",
-          [](const PlannedTest& planned) { return planned.ofThresholds() ? "thresholds.csv" : "cells_long.csv"; }},
-         {"value_column", "Its column", "text", &PlannedTest::value},
-         {"r_formula", "The model in R's notation, for the data of r_call", "text",
-          [](const PlannedTest& planned) {
-              return formulaText(planned.value, planned.analysis->test, planned.factors);
-          }},
-         {"r_call",
-          "The test as a call of R (lmm: with the package lme4) on data: the rows of the file that belong here, "
-          "averaged "
-          "by participant and factors, these as factor(), without whoever lacks a combination: data <- "
-          "aggregate(rows[value_column], lapply(rows[c(\"participant_id\", factors)], factor), mean)",
-          "text",
-          [](const PlannedTest& planned) { return callText(planned.value, planned.analysis->test, planned.factors); }},
-         {"n_participants", "Participants who count and were to have the outcome there", "integer",
-          [](const PlannedTest& planned) { return planned.kept.counted(); }},
-         {"n_complete", "Of these who have a value at every combination of the factors: whom complete cases keep",
-          "integer", [](const PlannedTest& planned) { return planned.kept.complete(); }}});
+    append(columns,
+           {{"block", "Block whose trials are analysed; NA: of a staircase", "text", &PlannedTest::block},
+            {"factors", "Factors, parted by ;", "text",
+             [](const PlannedTest& planned) { return joined(planned.factors, ";"); }},
+            {"test", "Test that the protocol names", "text",
+             [](const PlannedTest& planned) { return planned.analysis->test; }},
+            {"file", "File that has the values: its rows of this protocol and block, or staircase", "text",
+             [](const PlannedTest& planned) { return planned.ofThresholds() ? "thresholds.csv" : "cells_long.csv"; }},
+            {"value_column", "Its column", "text", &PlannedTest::value},
+            {"r_formula", "The model in R's notation, for the data of r_call", "text",
+             [](const PlannedTest& planned) {
+                 return formulaText(planned.value, planned.analysis->test, {planned.factors, planned.within});
+             }},
+            {"r_call",
+             "The test as a call of R (lmm: with the package lme4) on data: the rows of the file that belong here, "
+             "averaged "
+             "by participant and factors, these as factor(), without whoever lacks a combination: data <- "
+             "aggregate(rows[value_column], lapply(rows[c(\"participant_id\", factors)], factor), mean)",
+             "text",
+             [](const PlannedTest& planned) {
+                 return callText(planned.value, planned.analysis->test, {planned.factors, planned.within});
+             }},
+            {"n_participants", "Participants who count and were to have the outcome there", "integer",
+             &PlannedTest::counted},
+            {"n_complete", "Of these who have a value at every combination of the factors: whom complete cases keep",
+             "integer", &PlannedTest::complete}});
     return columns;
 }
 
@@ -183,23 +173,29 @@ Names blocksOf(const store::AnalysisRow& analysis, const std::vector<Cell>& cell
 
 }  // namespace
 
-Table makeAnalyses(const StudyData& study, const std::vector<Cell>& cells) {
-    std::vector<PlannedTest> rows;
-    const auto add = [&rows](PlannedTest planned) {
-        if (!planned.kept.people.empty()) rows.push_back(std::move(planned));
+std::vector<PlannedTest> plannedTests(const StudyData& study, const std::vector<Cell>& cells) {
+    std::vector<PlannedTest> tests;
+    const auto add = [&tests](const store::AnalysisRow& analysis, const Factors& factors, const std::string& block,
+                              const std::string& value, const Kept& kept) {
+        if (!kept.people.empty())
+            tests.push_back({&analysis, factors.all, factors.within, block, value, kept.counted(), kept.complete()});
     };
     for (const store::AnalysisRow& analysis : study.analyses) {
         const Factors factors = factorsOf(study, analysis);
         if (analysis.outcome.empty()) {
             const char* value = isLogarithmic(study, analysis) ? kLogThreshold : kThreshold;
-            add({&analysis, factors, "", value, keptBy(study, analysis, factors)});
+            add(analysis, factors, "", value, keptBy(study, analysis, factors));
             continue;
         }
         for (const std::string& block : blocksOf(analysis, cells))
-            add({&analysis, factors, block, cellColumn(analysis.outcome), keptBy(study, analysis, block, cells)});
+            add(analysis, factors, block, cellColumn(analysis.outcome), keptBy(study, analysis, block, cells));
     }
+    return tests;
+}
+
+Table makeAnalyses(const StudyData& study, const std::vector<Cell>& cells) {
     return makeTable("analyses.csv", "One row per analysis that the protocol plans, and block.", plannedTestColumns(),
-                     rows);
+                     plannedTests(study, cells));
 }
 
 }  // namespace passung::exporter

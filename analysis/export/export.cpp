@@ -70,7 +70,8 @@ void markMissing(Table& table) {
             if (text.empty()) text = kMissing;
 }
 
-std::string readmeText(const StudyData& study, const std::vector<Table>& tables, bool samples) {
+std::string readmeText(const StudyData& study, const std::vector<Table>& tables, const std::vector<ExportedFile>& more,
+                       bool samples) {
     std::string text = "# Export of a Passung study\n\n";
     for (const store::ProtocolRow& protocol : study.protocols) {
         text += "- " + (protocol.title.empty() ? protocol.name : protocol.title) + " (" + protocol.name + ", version " +
@@ -88,6 +89,7 @@ std::string readmeText(const StudyData& study, const std::vector<Table>& tables,
         if (table.file == kSamplesPattern && !samples) continue;
         text += "| `" + table.file + "` | " + table.about + " |\n";
     }
+    for (const ExportedFile& file : more) text += "| `" + file.path + "` | " + file.about + " |\n";
     text +=
         "| `plan.json` | The plans as they ran: every condition, block and questionnaire with all that the protocol "
         "leaves to a default. |\n"
@@ -206,9 +208,14 @@ Result<ExportReport> exportAll(const store::StoreReader& reader, const std::stri
     tables.push_back(makeCodebook(tables));
     writer.write("codebook.csv", toCsv(tables.back()));
     writer.write("codebook.json", codebookJson(tables));
-    writer.write("README.md", readmeText(*study, tables, options.samples));
+    const auto more = options.more_files ? options.more_files(*study) : std::vector<ExportedFile>{};
+    for (const ExportedFile& file : more) writer.write(file.path, file.bytes);
+    writer.write("README.md", readmeText(*study, tables, more, options.samples));
     if (options.samples) writeSamples(reader, *study, options, writer);
     if (writer.failed()) return writer.errors();
+    if (options.in_folder) {
+        if (const auto done = folder->letAdd(options.in_folder); !done) return done.errors();
+    }
     const auto kept = folder->complete();
     if (!kept) return kept.errors();
     return ExportReport{study->attempts.size(), writer.files() + 1, reader.damages().size(), *kept};

@@ -1,13 +1,23 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
+#include "analysis/export/study_data.h"
 #include "core/base/result.h"
 #include "study/store/read/store_reader.h"
 
 /// The folder's name is a word of the language, hence `exporter`.
 namespace passung::exporter {
+
+/// A file with its place in the export.
+struct ExportedFile {
+    std::string path;
+    std::string bytes;
+    std::string about = {};  // one sentence for the README; empty: none
+};
 
 struct ExportOptions {
     bool samples = true;  // every recorded tick: some 100 kB per second of a trial
@@ -16,6 +26,11 @@ struct ExportOptions {
     std::function<void(double)> progress;
     /// Asked as often: true ends the export, which then leaves nothing; empty: never.
     std::function<bool()> cancelled = {};
+    /// Further files, made of what the tables are made of; empty: none.
+    std::function<std::vector<ExportedFile>(const StudyData& study)> more_files = {};
+    /// Called in the folder when everything is written, SHA256SUMS too, before it takes its place. Of what it adds only
+    /// the files stay that it names.
+    std::function<std::vector<std::string>(const std::filesystem::path& folder)> in_folder = {};
 };
 
 struct ExportReport {

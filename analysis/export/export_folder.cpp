@@ -31,19 +31,39 @@ bool isEarlierExport(const fs::path& folder) {
     return codebook && codebook->starts_with(kCodebookStart);
 }
 
-/// The first thing in `folder` that its SHA256SUMS does not list; empty if there is none.
-fs::path strangerIn(const fs::path& folder) {
-    std::set<std::string> listed = {"SHA256SUMS"};
-    const auto text = readFile((folder / "SHA256SUMS").string());
+constexpr const char* kSums = "SHA256SUMS";
+constexpr const char* kSamplesFolder = "samples";
+
+/// What the folder's SHA256SUMS lists: path, sum.
+std::map<std::string, std::string> sumsIn(const fs::path& folder) {
+    std::map<std::string, std::string> listed;
+    const auto text = readFile((folder / kSums).string());
     std::istringstream sums(text ? *text : std::string());
-    for (std::string sum, path; sums >> sum && sums.get() && sums.get() && std::getline(sums, path);) {
-        listed.insert(path);
-    }
+    for (std::string sum, path; sums >> sum && sums.get() && sums.get() && std::getline(sums, path);)
+        listed[path] = sum;
+    return listed;
+}
+
+/// All that the folder's SHA256SUMS does not list.
+std::vector<fs::path> strangersIn(const fs::path& folder) {
+    const auto listed = sumsIn(folder);
+    std::vector<fs::path> strangers;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
         if (entry.is_directory() && !entry.is_symlink()) continue;
-        if (listed.count(entry.path().lexically_relative(folder).generic_string()) == 0) return entry.path();
+        const std::string path = entry.path().lexically_relative(folder).generic_string();
+        if (path != kSums && listed.count(path) == 0) strangers.push_back(entry.path());
     }
-    return {};
+    return strangers;
+}
+
+/// Did somebody change a file of an earlier export? Samples are not looked at: they are many, and nobody edits them.
+bool isEdited(const fs::path& folder) {
+    const auto listed = sumsIn(folder);
+    return std::any_of(listed.begin(), listed.end(), [&](const auto& file) {
+        if (file.first.starts_with(std::string(kSamplesFolder) + "/")) return false;
+        const auto bytes = readFile((folder / file.first).string());
+        return bytes && sha256Hex(*bytes) != file.second;
+    });
 }
 
 /// Names of the studies whose protocols an earlier export holds.
@@ -71,8 +91,8 @@ Result<Done> checkReplaceable(const fs::path& folder, const std::vector<std::str
         if (!isEarlierExport(folder)) {
             return folderError(folder, "exists and holds something else than an export: name another folder");
         }
-        if (const fs::path stranger = strangerIn(folder); !stranger.empty()) {
-            return folderError(stranger,
+        if (const auto strangers = strangersIn(folder); !strangers.empty()) {
+            return folderError(strangers.front(),
                                "does not belong to the earlier export in this folder and would be lost: "
                                "move it away or name another folder");
         }
@@ -101,7 +121,6 @@ constexpr std::size_t kRandomLetters = 6;  // of mkdtemp
 constexpr const char* kReplaced = "replaced";
 constexpr std::string_view kPartial = ".partial.";
 constexpr std::string_view kBackup = ".backup.";
-constexpr const char* kSamplesFolder = "samples";
 
 /// The lines of an export's list of what is missing; none if it misses nothing, nothing if the list cannot be read.
 std::optional<std::set<std::string>> missingIn(const fs::path& folder) {
@@ -115,9 +134,11 @@ std::optional<std::set<std::string>> missingIn(const fs::path& folder) {
     return lines;
 }
 
-/// May the export in `earlier` hold what the one in `fresh` lacks: samples that nobody looked at, or what is damaged?
+/// May the export in `earlier` hold what the one in `fresh` lacks: samples that nobody looked at, what is damaged, or
+/// what somebody wrote into a file?
 bool holdsMore(const fs::path& earlier, const fs::path& fresh) {
     if (fs::exists(earlier / kSamplesFolder) && !fs::exists(fresh / kSamplesFolder)) return true;
+    if (isEdited(earlier)) return true;
     const auto before = missingIn(earlier), now = missingIn(fresh);
     return !before || !now || !std::includes(before->begin(), before->end(), now->begin(), now->end());
 }
@@ -213,10 +234,35 @@ fs::path ExportFolder::placeOfEarlier() const {
     return name();
 }
 
-Result<std::string> ExportFolder::complete() {
+Result<Done> ExportFolder::writeSums() {
+    sums_.erase(kSums);
     std::string sums;
     for (const auto& [path, sum] : sums_) sums += sum + "  " + path + "\n";
-    if (auto written = write("SHA256SUMS", sums); !written) return written.errors();
+    auto written = write(kSums, sums);
+    sums_.erase(kSums);
+    return written;
+}
+
+Result<Done> ExportFolder::letAdd(const std::function<std::vector<std::string>(const fs::path&)>& work) {
+    if (auto written = writeSums(); !written) return written;
+    const fs::path place = fs::absolute(workshop_ / kNew);
+    for (const std::string& added : work(place)) {
+        const auto bytes = readFile((place / added).string());
+        if (!bytes) return bytes.errors();
+        sums_[added] = sha256Hex(*bytes);
+    }
+    if (auto written = writeSums(); !written) return written;
+    std::error_code error;
+    for (const fs::path& stranger : strangersIn(place)) fs::remove(stranger, error);
+    std::vector<fs::path> empty;
+    for (const auto& entry : fs::recursive_directory_iterator(place))
+        if (entry.is_directory() && fs::is_empty(entry.path(), error)) empty.push_back(entry.path());
+    for (const fs::path& folder : empty) fs::remove(folder, error);
+    return Done{};
+}
+
+Result<std::string> ExportFolder::complete() {
+    if (auto written = writeSums(); !written) return written.errors();
     if (auto closed = closeToOthers(); !closed) return closed.errors();
 
     // Somebody may have put a file there meanwhile.

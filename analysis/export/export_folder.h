@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -29,14 +30,19 @@ public:
     /// Writes one file; `path` is inside the folder, with '/'.
     Result<Done> write(const std::string& path, std::string_view bytes);
 
+    /// Calls `work` with the folder that holds everything written, SHA256SUMS over it included. Files that it names
+    /// belong to the export from then on; whatever else it left there is removed.
+    Result<Done> letAdd(const std::function<std::vector<std::string>(const std::filesystem::path&)>& work);
+
     /// Adds SHA256SUMS over everything written and puts the folder in its place. An earlier export there is removed,
     /// but not where it has samples and the new one none, nor where the new one's missing.csv has a row that the
-    /// earlier one's has not: it gets the first free name
+    /// earlier one's has not, nor where a file beside the samples was edited: it gets the first free name
     /// `<folder>.backup.1`, `<folder>.backup.2` …, which is returned; empty if there was nothing to keep.
     Result<std::string> complete();
 
 private:
     ExportFolder(std::filesystem::path folder, std::vector<std::string> studies, bool group);
+    Result<Done> writeSums();
     Result<Done> closeToOthers() const;
     std::filesystem::path placeOfEarlier() const;
 

@@ -245,6 +245,15 @@ private:
         sub->add_flag("--no-samples", export_.no_samples, "leave out the recorded ticks");
         addGroup(sub, export_.group);
 
+        sub = command("report",
+                      "write all data as tables with the planned analyses as a text of R, analysis.Rmd; where R is "
+                      "installed, their report.html and results.json too",
+                      report_, reportData);
+        sub->add_option("DB", report_.database, "database of a study")->required();
+        sub->add_option("--out", report_.out, "folder of the report")->required();
+        sub->add_flag("--no-samples", report_.no_samples, "leave out the recorded ticks");
+        addGroup(sub, report_.group);
+
         sub = command("merge", "put the databases of several stations together", merge_, merge);
         sub->add_option("DB", merge_.databases, "databases of one study")->required()->expected(1, -1);
         sub->add_option("--out", merge_.out, "database that gets what it does not have yet")->required();
@@ -554,7 +563,7 @@ private:
     ParticipantArguments participant_;
     ResumeArguments resume_;
     SessionArguments session_;
-    ExportArguments export_;
+    ExportArguments export_, report_;
     MergeArguments merge_;
     PushArguments push_;
     VerifyArguments verify_;

@@ -105,6 +105,7 @@ struct ExportArguments {
     bool group = false;
 };
 int exportData(const ExportArguments& options);
+int reportData(const ExportArguments& options);
 
 struct MergeArguments {
     std::vector<std::string> databases;

@@ -1,0 +1,10 @@
+# cmake -DOUT=x.cpp -DFILES="a.R;b.css" -P embed.cmake: a source that holds the files as texts, by name.
+cmake_policy(VERSION 3.25)
+set(source "#include \"analysis/report/folder_texts.h\"\n\nnamespace passung::report {\n\nstd::vector<FolderText> folderTexts() {\n    return {\n")
+foreach(file IN LISTS FILES)
+  file(READ ${file} text)
+  cmake_path(GET file FILENAME name)
+  string(APPEND source "        {\"${name}\", R\"embedded(${text})embedded\"},\n")
+endforeach()
+string(APPEND source "    };\n}\n\n}  // namespace passung::report\n")
+file(WRITE ${OUT} "${source}")
