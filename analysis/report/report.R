@@ -146,7 +146,7 @@ without <- function(known, expression) {
 banner <- function(studied) {
   if (studied == "real") return(invisible())
   html("<div class=\"banner\">", if (studied == "simulated") "Simulated participants: this shows that study and analysis work, never how people behave"
-       else "Pilot data: made to try the study, no result of it", "</div>")
+       else "Pilot data: made to try the study, no result of it", "</div>\n<style>h1:not(.title)::after, h2::after { content: \"", studied, "\" }</style>")
 }
 
 # ---- Who and what is counted -----------------------------------------------------------------------------------------
@@ -268,13 +268,14 @@ show_cells <- function(id, data, value, factors) {
   at <- combinations(data, factors)
   where <- combination(data, factors)
   decimals <- decimals_of(sd(data[[value]]), 3)
-  report$cells[[id]] <- cbind(cell = seq_len(nrow(at)), data.frame(lapply(at, as.character), check.names = FALSE))
-  html_table(c(name(factors), "n", "mean", "sd", paste(percent, "interval of the mean")), words = length(factors),
+  at[] <- lapply(at, as.character)
+  report$cells[[id]] <- cbind(data.frame(cell = seq_len(nrow(at))), at)
+  html_table(c(if (length(factors) > 0) name(factors), "n", "mean", "sd", paste(percent, "interval of the mean")), words = length(factors),
              caption = paste("Cells of", name(value)), lapply(seq_len(nrow(at)), function(i) {
     x <- data[[value]][where == combination(at, factors)[i]]
     half <- if (length(x) > 1) qt(0.975, length(x) - 1) * sd(x) / sqrt(length(x)) else NA
     cell <- paste0(id, ".cell.", i)
-    c(name(vapply(at[i, , drop = FALSE], as.character, "")), count(paste0(cell, ".n"), length(x)), num(paste0(cell, ".mean"), mean(x), decimals = decimals),
+    c(if (length(factors) > 0) name(unlist(at[i, ])), count(paste0(cell, ".n"), length(x)), num(paste0(cell, ".mean"), mean(x), decimals = decimals),
       num(paste0(cell, ".sd"), sd(x), decimals = decimals), interval(cell, mean(x) - half, mean(x) + half, decimals))
   }))
 }
@@ -305,18 +306,22 @@ plot_people <- function(data, value, factors) {
   old <- par(mfrow = c(ceiling(length(panels) / columns), columns), mar = c(4.2, 4.2, 1.9, 0.6), mgp = c(2.9, 0.5, 0),
              tcl = -0.25, las = 1, bty = "l", cex = 0.8, fg = "#444444", col.axis = "#444444", col.lab = "#444444")
   on.exit(par(old))
-  range <- range(data[[value]])
+  half_width <- function(y) if (length(y) > 1) qt(0.975, length(y) - 1) * sd(y) / sqrt(length(y)) else 0
+  range <- range(data[[value]], unlist(tapply(data[[value]], combination(data, factors), function(y) mean(y) + half_width(y) * c(-1, 1))))
   if (diff(range) == 0) range <- range + c(-0.5, 0.5)
   where <- combination(data, rest)
+  marks <- if (is.null(axis_factor)) "" else levels(data[[axis_factor]])
+  wrapped <- if (max(nchar(marks)) * length(marks) > 60 / columns) gsub("([_ ])", "\\1\n", marks) else marks
+  lines <- max(lengths(strsplit(wrapped, "\n")), 1)
+  par(mar = c(2.6 + lines, 4.2, 1.9, 0.6))
   for (panel in panels) {
     its <- data[where == panel, ]
-    marks <- if (is.null(axis_factor)) "" else levels(data[[axis_factor]])
     x <- if (is.null(axis_factor)) rep(1L, nrow(its)) else as.integer(its[[axis_factor]])
-    plot(NA, xlim = c(0.6, length(marks) + 0.4), ylim = range, xaxt = "n", xlab = if (is.null(axis_factor)) "" else axis_factor, ylab = value)
+    plot(NA, xlim = c(0.6, length(marks) + 0.4), ylim = range, xaxt = "n", xlab = "", ylab = value)
+    if (!is.null(axis_factor)) title(xlab = axis_factor, line = 0.6 + lines)
     grid(NA, NULL, col = "#e4e4e4", lty = 1)
     title(main = panel, font.main = 1, cex.main = 1, adj = 0, line = 0.5)
     axis(1, seq_along(marks), FALSE)
-    wrapped <- if (max(nchar(marks)) * length(marks) > 60 / columns) gsub("([_ ])", "\\1\n", marks) else marks
     axis(1, seq_along(marks), wrapped, tick = FALSE, padj = 1, line = -0.9, cex.axis = if (length(marks) > 6 / columns) 0.8 else 1, gap.axis = 0.1)
     for (person in unique(its$participant_id)) {
       mine <- its$participant_id == person
@@ -324,8 +329,7 @@ plot_people <- function(data, value, factors) {
     }
     for (i in sort(unique(x))) {
       y <- its[[value]][x == i]
-      half <- if (length(y) > 1) qt(0.975, length(y) - 1) * sd(y) / sqrt(length(y)) else 0
-      segments(i, mean(y) - half, i, mean(y) + half, col = blue, lwd = 2.5)
+      segments(i, mean(y) - half_width(y), i, mean(y) + half_width(y), col = blue, lwd = 2.5)
       points(i, mean(y), pch = 21, bg = "white", col = blue, lwd = 2, cex = 1.3)
     }
   }
@@ -349,6 +353,15 @@ note_normal <- function(id, x, what) {
   para("For information; no choice hangs on it. Shapiro and Wilk&rsquo;s test of ", what, ": <i>W</i> = ",
        num(paste0(id, ".shapiro.w"), test$statistic), ", <i>p</i> ", { p_value(paste0(id, ".shapiro.p"), test$p.value); again_p(paste0(id, ".shapiro.p")) },
        ".", class = "note")
+}
+
+note_spheric <- function(id, fit) {
+  tests <- tryCatch(without("HF eps", summary(fit))$sphericity.tests, error = function(e) NULL)
+  if (is.null(tests) || nrow(tests) == 0) return(invisible())
+  para("Mauchly&rsquo;s test of sphericity: ", paste0(vapply(seq_len(nrow(tests)), function(i) {
+    of <- paste0(id, ".", rownames(tests)[i], ".mauchly")
+    paste0(name(gsub(":", " \u00d7 ", rownames(tests)[i])), " <i>W</i> = ", num(paste0(of, "_w"), tests[i, 1]), ", <i>p</i> ", { p_value(paste0(of, "_p"), tests[i, 2]); again_p(paste0(of, "_p")) })
+  }, ""), collapse = "; "), ". It decides nothing: both <i>p</i> stand above.", class = "note")
 }
 
 sentence <- function(...) para("<b>To copy:</b> ", ..., class = "sentence")
@@ -510,13 +523,14 @@ show_anova <- function(id, fit, data, value, factors) if (!is.null(fit)) compute
         num(paste0(term, ".ges"), plain$ges[i], decimals = 3))
     }))
   note_normal(id, residuals(fit$lm), "the residuals")
-  for (i in seq_along(terms)) {
+  note_spheric(id, fit)
+  sentence("Analysis of variance of ", name(value), ": ", paste0(vapply(seq_along(terms), function(i) {
     term <- paste0(id, ".", terms[i])
-    sentence(if (grepl(":", terms[i])) "The interaction " else "The effect of ", name(gsub(":", " \u00d7 ", terms[i])), " on ", name(value), ": <i>F</i>(", again(paste0(term, ".df1")),
-             ", ", again(paste0(term, ".df2")), ") = ", again(paste0(term, ".F")), ", <i>p</i> ", again_p(paste0(term, ".p")),
-             if (spheric[i]) paste0(" (Greenhouse-Geisser: &epsilon; = ", again(paste0(term, ".gg_epsilon")), ", <i>p</i> ", again_p(paste0(term, ".gg_p")), ")"),
-             ", &eta;&sup2;<sub>p</sub> = ", again(paste0(term, ".pes")), " ", again_interval(paste0(term, ".pes")), ".")
-  }
+    paste0(name(gsub(":", " \u00d7 ", terms[i])), ", <i>F</i>(", again(paste0(term, ".df1")), ", ", again(paste0(term, ".df2")), ") = ",
+           again(paste0(term, ".F")), ", <i>p</i> ", again_p(paste0(term, ".p")),
+           if (spheric[i]) paste0(" (Greenhouse-Geisser: &epsilon; = ", again(paste0(term, ".gg_epsilon")), ", <i>p</i> ", again_p(paste0(term, ".gg_p")), ")"),
+           ", &eta;&sup2;<sub>p</sub> = ", again(paste0(term, ".pes")), " ", again_interval(paste0(term, ".pes")))
+  }, ""), collapse = "; "), ".")
   p <- ifelse(spheric, corrected$`Pr(>F)`, plain$`Pr(>F)`)
   setNames(p, terms)[terms %in% factors]
 })
@@ -533,11 +547,11 @@ show_lmm <- function(id, fit, data, value, factors) if (!is.null(fit)) computed(
   para("Standard deviation between participants: ", num(paste0(id, ".sd_participants"), spread[1]), "; of the residuals: ",
        num(paste0(id, ".sd_residual"), spread[2]), if (lme4::isSingular(fit)) "; the fit is singular: no difference between participants is left to be told", ".", class = "note")
   note_normal(id, residuals(fit), "the residuals")
-  for (term in rownames(table)) {
+  sentence("Mixed model of ", name(value), " with an intercept for each participant: ", paste0(vapply(rownames(table), function(term) {
     of <- paste0(id, ".", term)
-    sentence("In the mixed model of ", name(value), ", ", name(gsub(":", " \u00d7 ", term)), ": <i>F</i>(", again(paste0(of, ".df1")), ", ", again(paste0(of, ".df2")), ") = ",
-             again(paste0(of, ".F")), ", <i>p</i> ", again_p(paste0(of, ".p")), ".")
-  }
+    paste0(name(gsub(":", " \u00d7 ", term)), ", <i>F</i>(", again(paste0(of, ".df1")), ", ", again(paste0(of, ".df2")), ") = ",
+           again(paste0(of, ".F")), ", <i>p</i> ", again_p(paste0(of, ".p")))
+  }, ""), collapse = "; "), ".")
   setNames(table$`Pr(>F)`, rownames(table))[rownames(table) %in% factors]
 })
 

@@ -51,7 +51,7 @@ int reportData(const ExportArguments& options) {
     progress.show("");
     if (!outcome) return fail(outcome.errors());
     noteExport(options, outcome->tables.kept);
-    fmt::print("{}: {} attempts in {} files, {} planned analyses\n", options.out, outcome->tables.attempts,
+    fmt::print("{}: {} attempts in {} files, planned analyses: {}\n", options.out, outcome->tables.attempts,
                outcome->tables.files, outcome->analyses);
     warn(options.out, outcome->said);
     const bool damaged = tellDamages(options.database, reader->damages(), "left out, see missing.csv");

@@ -1,27 +1,15 @@
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <map>
 
 #include "tests/ui/cli/program.h"
+#include "tests/ui/cli/r_scripts.h"
 #include "tests/ui/cli/small_study.h"
 
 namespace passung::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool hasR() { return std::system("Rscript --version > /dev/null 2>&1") == 0; }
-
-/// What R's `expression` prints.
-std::string askR(const std::string& arguments, int& code) {
-    FILE* pipe = popen(("Rscript --vanilla " + arguments + " 2>&1").c_str(), "r");
-    std::string text;
-    char buffer[4096];
-    for (std::size_t n = 0; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) text.append(buffer, n);
-    code = pclose(pipe);
-    return text;
-}
 
 /// The shipped studies with contacts that are quick to compute, and time-outs that some trials do not meet.
 class PlannedAnalyses : public testing::TestWithParam<const char*> {
@@ -69,6 +57,24 @@ TEST_P(PlannedAnalyses, KeepEveryCountedPersonInR) {
     if (readText(study()).find("picture = ") == std::string::npos) {
         EXPECT_EQ(check.exit_code, 0) << check.err;
     }
+}
+
+TEST_P(PlannedAnalyses, AreReportedWithEveryCountedPerson) {
+    // Truth: invariant (whoever counts has a value, so nobody is left out); R says nothing and leaves nothing out.
+    if (!hasReportPackages()) GTEST_SKIP() << kNoReportPackages;
+    ASSERT_EQ(runProgram(folder_.path(), {"run", study().string(), "--simulated", "4", "--db", "s.db"}).exit_code, 0);
+    const Ended report = runProgram(folder_.path(), {"report", "s.db", "--out", "out", "--no-samples"});
+    ASSERT_EQ(report.exit_code, 0) << report.err;
+    EXPECT_EQ(report.err, "");
+    const std::string results = readText(folder_ / "out/results.json");
+    const std::size_t planned = linesOf(readText(folder_ / "out/analyses.csv")).size() - 1;
+    EXPECT_GT(planned, 0u);
+    for (std::size_t i = 1; i <= planned; ++i)
+        for (const char* of : {".n", ".n_counted"})
+            EXPECT_NE(results.find("\"a" + std::to_string(i) + of + "\": 4,"), std::string::npos) << i << of;
+    int code = 0;
+    const std::string said = checkPage(folder_ / "out", code);
+    EXPECT_EQ(code, 0) << said;
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, PlannedAnalyses,

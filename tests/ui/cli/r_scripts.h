@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+namespace passung::test {
+
+inline bool hasR() { return std::system("Rscript --version > /dev/null 2>&1") == 0; }
+
+/// R with what a report needs of it (report_packages of ./dev).
+inline bool hasReportPackages() {
+    return std::system(
+               "Rscript --vanilla -e 'stopifnot(vapply(c(\"rmarkdown\", \"knitr\", \"jsonlite\", \"digest\", \"afex\", "
+               "\"emmeans\", \"lme4\", \"lmerTest\", \"survival\", \"coin\", \"effectsize\"), requireNamespace, NA, "
+               "quietly = TRUE), Sys.which(\"pandoc\") != \"\")' > /dev/null 2>&1") == 0;
+}
+
+constexpr const char* kNoReportPackages = "R or a package of a report is not installed (report_packages of ./dev)";
+
+/// What Rscript prints with these arguments, as a shell reads them.
+inline std::string askR(const std::string& arguments, int& code) {
+    FILE* pipe = popen(("LC_ALL=C.UTF-8 Rscript --vanilla " + arguments + " 2>&1").c_str(), "r");
+    std::string text;
+    char buffer[4096];
+    for (std::size_t n = 0; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) text.append(buffer, n);
+    code = pclose(pipe);
+    return text;
+}
+
+/// Prints what a page and its results say that cannot be: tests/ui/cli/report_page.R.
+inline std::string checkPage(const std::string& folder, int& code) {
+    return askR(std::string(PASSUNG_SOURCE_DIR) + "/tests/ui/cli/report_page.R '" + folder + "'", code);
+}
+
+}  // namespace passung::test

@@ -1,0 +1,46 @@
+# Rscript report_page.R FOLDER: every number of report.html stands with an id of results.json and shows its value, rounded;
+# no other digit stands in the page but in words of the study; nothing was left uncomputed. Exit code 1 if not.
+folder <- commandArgs(trailingOnly = TRUE)[1]
+read <- function(file) paste(readLines(file.path(folder, file), encoding = "UTF-8", warn = FALSE), collapse = "\n")
+page <- read("report.html")
+lines <- readLines(file.path(folder, "results.json"))
+wrong <- character()
+
+last <- which(grepl("^  \"cells\": ", lines)) - 2
+entries <- lines[seq(which(grepl("\"results\": ", lines)) + 1, last)]
+results <- setNames(suppressWarnings(as.numeric(sub("^.*\": ([^,]*),?$", "\\1", entries))), sub("^ *\"(.*)\": .*$", "\\1", entries))
+if (!any(grepl("\"not_computed\": \\[\\]", lines))) wrong <- c(wrong, lines[seq(which(grepl("not_computed", lines)), length(lines))])
+
+body <- sub("^.*<body[^>]*>", "", page)
+body <- gsub("<(style|script)[^>]*>.*?</(style|script)>", "", body, perl = TRUE)
+body <- gsub("<img[^>]*>", "", body)
+spans <- regmatches(body, gregexpr("<span data-result=\"[^\"]*\">.*?</span>", body, perl = TRUE))[[1]]
+ids <- sub("^<span data-result=\"([^\"]*)\">.*$", "\\1", spans)
+shown <- gsub("<sup>(.*?)</sup>", "e\\1", sub("^<span[^>]*>(.*)</span>$", "\\1", spans))
+shown <- gsub("\u2009|&thinsp;|&#8201;", "", gsub("\u2212|&minus;", "-", shown))
+shown <- gsub("(\u00d7|&times;)10e", "e", shown)
+for (i in seq_along(spans)) {
+  if (!(ids[i] %in% names(results))) { wrong <- c(wrong, paste(ids[i], "is no id of results.json")); next }
+  value <- results[[ids[i]]]
+  if (shown[i] %in% c("\u2013", "&ndash;")) { if (!is.na(value)) wrong <- c(wrong, paste(ids[i], "is not shown")); next }
+  if (grepl("\u221e|&infin;", shown[i])) next
+  if (grepl("^(&lt;|<)0[.]001$", shown[i])) { if (!(value < 0.001)) wrong <- c(wrong, paste(ids[i], "is not so small")); next }
+  number <- suppressWarnings(as.numeric(shown[i]))
+  fraction <- sub("^[^.e]*[.]?", "", sub("e.*$", "", shown[i]))
+  power <- if (grepl("e", shown[i])) as.numeric(sub("^.*e", "", shown[i])) else 0
+  if (is.na(number) || is.na(value) || abs(number - value) > 0.5000001 * 10^(power - nchar(fraction)))
+    wrong <- c(wrong, sprintf("%s shows %s and is %.12g", ids[i], shown[i], value))
+}
+never <- setdiff(names(results), ids)
+if (length(never) > 0) wrong <- c(wrong, paste("never shown:", never))
+
+rest <- gsub("<span data-result=\"[^\"]*\">.*?</span>", "", body, perl = TRUE)
+rest <- gsub("<span class=\"name\">.*?</span>", "", rest, perl = TRUE)
+rest <- sub("<h1 class=\"title[^>]*>.*?</h1>", "", rest, perl = TRUE)
+text <- gsub("&[#a-zA-Z0-9]+;", "", gsub("<[^>]*>", "", rest))
+stray <- regmatches(text, gregexpr(".{0,30}[0-9].{0,30}", text))[[1]]
+if (length(stray) > 0) wrong <- c(wrong, paste("a number without an id:", stray))
+
+if (length(wrong) > 0) cat(wrong, sep = "\n")
+cat(sprintf("%d numbers with an id, %d faults\n", length(spans), length(wrong)))
+if (length(wrong) > 0 || length(spans) == 0) quit(status = 1)

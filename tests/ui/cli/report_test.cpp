@@ -1,0 +1,311 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/base/digest.h"
+#include "tests/ui/cli/program.h"
+#include "tests/ui/cli/r_scripts.h"
+#include "tests/ui/cli/small_study.h"
+
+namespace passung::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSource = PASSUNG_SOURCE_DIR "/tests/ui/cli/";
+
+/// A factor of a random study.
+struct RandomFactor {
+    std::string name, table;  // table: its lines in the protocol
+    int levels;
+    bool between;
+};
+
+/// A study that nobody wrote, and what it plans as the second path reads it.
+struct RandomStudy {
+    std::string protocol, spec = "analysis,outcome,block,test,horizon_s,factors,within,between\n", excluded;
+    int participants = 0;
+};
+
+class StudyMaker {
+public:
+    explicit StudyMaker(unsigned seed) : random_(seed) {}
+
+    RandomStudy make() {
+        chooseFactors();
+        RandomStudy study;
+        const int groups = between_.size() == 2 ? 4 : between_.size() == 1 ? 2 : 1;
+        study.participants = groups == 1 ? 5 + upTo(3) : groups * 3 + upTo(3);
+        const std::string timeout = std::vector<std::string>{"3.3", "3.6", "20"}[static_cast<std::size_t>(upTo(2))];
+        study.protocol = smallStudy("random");
+        const auto replace = [&](const std::string& from, const std::string& to, const std::string& by) {
+            const std::size_t begin = study.protocol.find(from), end = study.protocol.find(to, begin);
+            study.protocol.replace(begin, end - begin, by);
+        };
+        std::string factors;
+        for (const RandomFactor& factor : within_) factors += factor.table;
+        for (const RandomFactor& factor : between_) factors += factor.table;
+        replace("[[factor]]", "[task]", factors);
+        replace("timeout_s = 20", "\n", "timeout_s = " + timeout);
+        replace("participants = 4", "\n", "participants = " + std::to_string(study.participants));
+        replace("repetitions = 3", "\n", "repetitions = " + std::to_string(within_.size() > 2 ? 1 : 1 + upTo(1)));
+        replace("order = \"williams\"", "\n", "order = \"random\"");
+        plan(study, timeout);
+        if (upTo(1) == 0) study.excluded = "S00" + std::to_string(1 + upTo(4));
+        return study;
+    }
+
+private:
+    /// From 0, evenly; by the remainder, which is the same everywhere.
+    int upTo(int most) { return static_cast<int>(random_() % static_cast<unsigned>(most + 1)); }
+
+    void chooseFactors() {
+        const std::vector<RandomFactor> within = {
+            {"method",
+             "[[factor]]\nname = \"method\"\nkey = \"contact.method\"\nlevels = [\"penalty\", \"god_object\"]\n", 2,
+             false},
+            {"push",
+             "[[factor]]\nname = \"push\"\nkey = \"contact.stiffness_N_per_m\"\nlevels = [\"0.5 max\", \"0.7 max\", "
+             "\"max\"]\n",
+             3, false},
+            {"deep", "[[factor]]\nname = \"deep\"\nkey = \"task.insertion_depth_mm\"\nlevels = [6, 7]\n", 2, false}};
+        const std::vector<RandomFactor> between = {
+            {"side",
+             "[[factor]]\nname = \"side\"\nkind = \"between\"\nkey = \"part.peg.pose.position\"\nlevels = [{ label = "
+             "\"right\", value = [4, 0, 8] }, { label = \"left\", value = [-4, 0, 8] }]\n",
+             2, true},
+            {"hold", "[[factor]]\nname = \"hold\"\nkind = \"between\"\nkey = \"task.hold_s\"\nlevels = [0.05, 0.1]\n",
+             2, true}};
+        const int first = upTo(2), count = 1 + upTo(2);
+        for (int i = 0; i < count; ++i) within_.push_back(within[static_cast<std::size_t>((first + i) % 3)]);
+        const int groups = upTo(2);
+        for (int i = 0; i < groups; ++i) between_.push_back(between[static_cast<std::size_t>(i)]);
+    }
+
+    static std::string namesOf(const std::vector<RandomFactor>& factors, const char* quote, const char* parted) {
+        std::string text;
+        for (const RandomFactor& factor : factors) text += (text.empty() ? "" : parted) + (quote + factor.name) + quote;
+        return text;
+    }
+
+    /// One analysis in both texts.
+    void planOne(RandomStudy& study, const std::string& test, const std::string& timeout,
+                 const std::vector<RandomFactor>& within, const std::vector<RandomFactor>& between) {
+        const std::string outcome =
+            std::vector<std::string>{"time_s", "path_length_m"}[static_cast<std::size_t>(upTo(1))];
+        std::vector<RandomFactor> all = within;
+        all.insert(all.end(), between.begin(), between.end());
+        study.protocol += "\n[[analysis]]\noutcome = \"" + outcome + "\"\ntest = \"" + test + "\"\n";
+        if (!all.empty()) study.protocol += "factors = [" + namesOf(all, "\"", ", ") + "]\n";
+        study.spec += std::to_string(++analyses_) + "," + outcome + ",main," + test + "," + timeout + "," +
+                      namesOf(all, "", ";") + "," + namesOf(within, "", ";") + "," + namesOf(between, "", ";") + "\n";
+    }
+
+    /// Every test that these factors allow.
+    void plan(RandomStudy& study, const std::string& timeout) {
+        const RandomFactor& one = within_[static_cast<std::size_t>(upTo(static_cast<int>(within_.size()) - 1))];
+        planOne(study, "rm_anova", timeout, within_, {});
+        planOne(study, "lmm", timeout, {one}, between_);
+        planOne(study, "mean", timeout, {}, {});
+        if (!between_.empty()) planOne(study, "mixed_anova", timeout, within_, between_);
+        for (const RandomFactor& group : between_) {
+            planOne(study, "welch_t", timeout, {}, {group});
+            planOne(study, "mann_whitney", timeout, {}, {group});
+        }
+        for (const RandomFactor& factor : within_)
+            for (const char* test : {"paired_t", "wilcoxon", "friedman"})
+                if ((factor.levels > 2) == (std::string(test) == "friedman"))
+                    planOne(study, test, timeout, {factor}, {});
+    }
+
+    std::mt19937 random_;
+    std::vector<RandomFactor> within_, between_;
+    int analyses_ = 0;
+};
+
+class RandomProtocols : public testing::TestWithParam<unsigned> {};
+
+TEST_P(RandomProtocols, AreTestedInTheReportAsInBaseR) {
+    // Truth: independent program (R 4, base): report_oracle.R, written from the definitions of the statistics, on
+    // trials.csv and codebook.csv alone; 1e-8, likelihoods 1e-4.
+    if (!hasReportPackages()) GTEST_SKIP() << kNoReportPackages;
+    const RandomStudy study = StudyMaker(GetParam()).make();
+    const TempFolder folder;
+    writeText(folder / "study.toml", study.protocol);
+    writeText(folder / "spec.csv", study.spec);
+    const Ended run = runProgram(
+        folder.path(), {"run", "study.toml", "--simulated", std::to_string(study.participants), "--db", "s.db"});
+    ASSERT_EQ(run.exit_code, 0) << run.err << study.protocol;
+    if (!study.excluded.empty()) {
+        ASSERT_EQ(
+            runProgram(folder.path(), {"participant", "exclude", "s.db", study.excluded, "--reason", "late"}).exit_code,
+            0);
+    }
+    const Ended report = runProgram(folder.path(), {"report", "s.db", "--out", "out", "--no-samples"});
+    ASSERT_EQ(report.exit_code, 0) << report.err << study.protocol;
+    EXPECT_EQ(report.err, "") << study.protocol;
+    int code = 0;
+    const std::string said = askR(std::string(kSource) + "report_oracle.R '" + (folder / "out") + "' '" +
+                                      (folder / "spec.csv") + "' '" + study.excluded + "'",
+                                  code);
+    EXPECT_EQ(code, 0) << said << study.protocol;
+    EXPECT_NE(said.find(" numbers compared, 0 wrong"), std::string::npos) << said;
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomProtocols,
+                         testing::Range(1u, std::getenv("PASSUNG_LONG") != nullptr ? 201u : 13u));
+
+/// A small study with six people, of whom one is excluded, and its report.
+class Report : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        if (!hasReportPackages()) return;
+        folder_ = new TempFolder;
+        std::string text = smallStudy();
+        const std::size_t factor = text.find("[[factor]]");
+        text.replace(
+            factor, text.find("[task]") - factor,
+            "[[factor]]\nname = \"method\"\nkey = \"contact.method\"\nlevels = [\"penalty\", \"god_object\"]\n"
+            "[[factor]]\nname = \"push\"\nkey = \"contact.stiffness_N_per_m\"\nlevels = [\"0.5 max\", \"max\"]\n\n");
+        text.replace(text.find("timeout_s = 20"), 14, "timeout_s = 3.5");
+        text.replace(text.find("repetitions = 3"), 15, "repetitions = 1");
+        text += "[[analysis]]\noutcome = \"time_s\"\nfactors = [\"method\", \"push\"]\ntest = \"rm_anova\"\n";
+        writeText(*folder_ / "study.toml", text);
+        runProgram(folder_->path(), {"run", "study.toml", "--simulated", "6", "--db", "s.db"});
+        runProgram(folder_->path(), {"participant", "exclude", "s.db", "S002", "--reason", "late"});
+        report_ = runProgram(folder_->path(), {"report", "s.db", "--out", "out", "--no-samples"});
+    }
+    static void TearDownTestSuite() {
+        delete folder_;
+        folder_ = nullptr;
+    }
+    void SetUp() override {
+        if (folder_ == nullptr) GTEST_SKIP() << kNoReportPackages;
+        ASSERT_EQ(report_.exit_code, 0) << report_.err;
+    }
+
+    static fs::path out() { return folder_->path() / "out"; }
+    /// A copy of the report's folder at a place of its own.
+    static fs::path copyTo(const TempFolder& place) {
+        fs::copy(out(), place.path() / "copy", fs::copy_options::recursive);
+        return place.path() / "copy";
+    }
+    static std::string renderAlone(const fs::path& folder, int& code) {
+        return askR("-e 'setwd(\"" + folder.string() + "\"); rmarkdown::render(\"analysis.Rmd\", quiet = TRUE)'", code);
+    }
+
+    static TempFolder* folder_;
+    static Ended report_;
+};
+
+TempFolder* Report::folder_ = nullptr;
+Ended Report::report_;
+
+TEST_F(Report, ShowsEveryNumberWithItsEntryOfTheResults) {
+    // Truth: closed form (a number that is shown is the stored one, rounded), read from the page's bytes.
+    int code = 0;
+    const std::string said = checkPage(out().string(), code);
+    EXPECT_EQ(code, 0) << said;
+    EXPECT_EQ(report_.err, "");
+    EXPECT_NE(readText(out() / "report.html").find("Simulated participants"), std::string::npos);
+}
+
+TEST_F(Report, IsMadeAgainByRAloneWithTheSameResults) {
+    // Truth: invariant (the folder's bytes decide the results).
+    const TempFolder place;
+    const fs::path copy = copyTo(place);
+    const std::string before = readText(copy / "results.json");
+    fs::remove(copy / "results.json");
+    fs::remove(copy / "report.html");
+    int code = 0;
+    const std::string said = renderAlone(copy, code);
+    ASSERT_EQ(code, 0) << said;
+    EXPECT_EQ(readText(copy / "results.json"), before);
+}
+
+TEST_F(Report, StopsAtOneChangedCell) {
+    // Truth: invariant (a table that is not the written one has another SHA-256).
+    const TempFolder place;
+    const fs::path copy = copyTo(place);
+    std::string text = readText(copy / "cells_long.csv");
+    const std::size_t digit = text.find_last_of("123456789");
+    text[digit] = text[digit] == '1' ? '2' : '1';
+    writeText(copy / "cells_long.csv", text);
+    fs::remove(copy / "results.json");
+    int code = 0;
+    const std::string said = renderAlone(copy, code);
+    EXPECT_NE(code, 0);
+    EXPECT_NE(said.find("cells_long.csv: is not the file that was written into this folder"), std::string::npos)
+        << said;
+    EXPECT_FALSE(fs::exists(copy / "results.json"));
+}
+
+TEST_F(Report, NamesWhomCompleteCasesLeaveOut) {
+    // Truth: independent program (R 4: reshape, complete.cases), 200 times.
+    int code = 0;
+    const std::string said = askR(std::string(kSource) + "report_left_out.R '" + out().string() + "' 200", code);
+    EXPECT_EQ(code, 0) << said;
+    EXPECT_NE(said.find("200 of 200 times"), std::string::npos) << said;
+}
+
+TEST_F(Report, HasTheTablesOfAnExportAndNoPlaceOfTheMachine) {
+    // Truth: invariant (`passung export` of the same data).
+    ASSERT_EQ(runProgram(folder_->path(), {"export", "s.db", "--out", "tables", "--no-samples"}).exit_code, 0);
+    std::size_t tables = 0;
+    for (const auto& entry : fs::directory_iterator(folder_->path() / "tables")) {
+        const std::string name = entry.path().filename();
+        if (!entry.is_regular_file() || name == "README.md" || name == "SHA256SUMS") continue;
+        EXPECT_EQ(readText(entry.path()), readText(out() / name)) << name;
+        ++tables;
+    }
+    EXPECT_GT(tables, 10u);
+    for (const char* name : {"analysis.Rmd", "report.R", "report.html", "results.json"})
+        EXPECT_EQ(readText(out() / name).find(folder_->path().string()), std::string::npos) << name;
+    std::string sums = readText(out() / "SHA256SUMS");
+    for (const std::string& line : linesOf(sums))
+        EXPECT_EQ(line.substr(0, 64), sha256Hex(readText(out() / line.substr(66)))) << line;
+    EXPECT_NE(sums.find("  results.json\n"), std::string::npos);
+}
+
+TEST_F(Report, KeepsATextThatSomebodyEdited) {
+    // Truth: invariant (no edited byte is lost).
+    const std::string edited = readText(out() / "analysis.Rmd") + "\nMine.\n";
+    const TempFolder place;
+    const fs::path copy = copyTo(place);
+    writeText(copy / "analysis.Rmd", edited);
+    const Ended again =
+        runProgram(place.path(), {"report", (folder_->path() / "s.db").string(), "--out", "copy", "--no-samples"});
+    ASSERT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_NE(again.err.find("kept as"), std::string::npos) << again.err;
+    EXPECT_EQ(readText(place.path() / "copy.backup.1" / "analysis.Rmd"), edited);
+    EXPECT_EQ(readText(copy / "analysis.Rmd"), readText(out() / "analysis.Rmd"));
+    EXPECT_EQ(readText(copy / "results.json"), readText(out() / "results.json"));
+}
+
+TEST(ReportWithoutR, IsCompleteButForThePageAndNamesTheLineThatInstallsIt) {
+    // Truth: invariant (a search path without programs has no R).
+    const TempFolder folder;
+    writeText(folder / "study.toml",
+              smallStudy() + "[[analysis]]\noutcome = \"time_s\"\nfactors = [\"chance\"]\ntest = \"paired_t\"\n");
+    ASSERT_EQ(runProgram(folder.path(), {"run", "study.toml", "--simulated", "1", "--db", "s.db"}).exit_code, 0);
+    const std::string path = std::getenv("PATH");
+    setenv("PATH", folder.path().c_str(), 1);
+    const Ended report = runProgram(folder.path(), {"report", "s.db", "--out", "out", "--no-samples"});
+    setenv("PATH", path.c_str(), 1);
+    EXPECT_EQ(report.exit_code, 0) << report.err;
+    EXPECT_NE(report.out.find("apt install r-base-core pandoc r-cran-rmarkdown"), std::string::npos) << report.out;
+    EXPECT_NE(report.out.find("r-cran-effectsize r-cran-survival"), std::string::npos) << report.out;
+    for (const char* name : {"analysis.Rmd", "report.R", "report.css", "trials.csv", "SHA256SUMS"})
+        EXPECT_TRUE(fs::exists(folder.path() / "out" / name)) << name;
+    for (const char* name : {"report.html", "results.json"})
+        EXPECT_FALSE(fs::exists(folder.path() / "out" / name)) << name;
+    fs::create_directory(folder / "mine");
+    writeText(folder / "mine/notes.txt", "mine");
+    const Ended refused = runProgram(folder.path(), {"report", "s.db", "--out", "mine", "--no-samples"});
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_NE(refused.err.find("mine: error: "), std::string::npos) << refused.err;
+    EXPECT_EQ(readText(folder / "mine/notes.txt"), "mine");
+}
+
+}  // namespace
+}  // namespace passung::test
