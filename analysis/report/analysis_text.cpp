@@ -34,7 +34,7 @@ const TestWords& wordsOf(const std::string& test) {
         {"welch_t", "t-test of Welch", {"effectsize"}},
         {"mann_whitney", "rank-sum test of Mann and Whitney", {"coin"}},
         {"mixed_anova", "mixed analysis of variance", {"afex", "emmeans", "effectsize"}},
-        {"lmm", "linear mixed model with an intercept for each participant", {"lmerTest", "lme4", "emmeans"}},
+        {"lmm", "linear mixed model", {"lmerTest", "lme4", "emmeans"}},
         {"mean", "mean with its interval", {}}};
     const auto found =
         std::find_if(known.begin(), known.end(), [&](const TestWords& words) { return test == words.test; });
@@ -128,9 +128,9 @@ std::string dataOf(const Section& section) {
     const std::string id = section.id();
     const char* table = section.planned.ofThresholds() ? "thresholds" : "cells";
     return levelsOf(section) + fmt::format("rows <- with_levels({}, {}_levels)\n", rowsOf(section, table), id) +
-           fmt::format(
-               "{0} <- means_of_people(\"{0}\", rows, counted_people(sessions, studied, protocols[{1}]), {2}{3})\n", id,
-               section.protocol, rText(section.planned.value), section.sides());
+           fmt::format("people <- counted_people(sessions, studied, protocols[{}])\n", section.protocol) +
+           fmt::format("{0} <- means_of_people(\"{0}\", rows, people, {1}{2})\n", id, rText(section.planned.value),
+                       section.sides());
 }
 
 std::string pictureOf(const Section& section) {
@@ -156,9 +156,30 @@ std::string testOf(const Section& section) {
             fmt::format("lmerTest::lmer({} ~ {} + (1 | participant_id), {})", section.planned.value, effects, id),
             "show_lmm");
     }
-    if (section.test() == "mean") return text + fmt::format("show_mean(\"{0}\", {0}, {1})\n", id, value);
+    const std::string factor = section.planned.factors.empty() ? "" : rText(section.planned.factors.front());
+    const auto ofLevels = [&](const std::string& levels, const std::string& call) {
+        return text + fmt::format(
+                          "{0}_{1} <- split({0}${2}, {0}${3})\n{0}_test <- computed(\"{0}\", {4})\n"
+                          "{0}_p <- show_{5}(\"{0}\", {0}_test, {0}_{1}, {6}, {7})\n",
+                          id, levels, section.planned.value, section.planned.factors.front(), call, section.test(),
+                          value, factor);
+    };
+    const auto ofPair = [&](const char* function, const char* between, const char* end) {
+        return ofLevels("pair", fmt::format("{0}({1}_pair[[1]]{2}{1}_pair[[2]]{3})", function, id, between, end));
+    };
+    if (section.test() == "paired_t") return ofPair("t.test", ", ", ", paired = TRUE");
+    if (section.test() == "welch_t") return ofPair("t.test", ", ", "");
+    if (section.test() == "wilcoxon") return ofPair("signed_ranks", " - ", "");
+    if (section.test() == "mann_whitney") return ofPair("rank_sums", ", ", "");
+    if (section.test() == "friedman")
+        return text + fmt::format(
+                          "{0}_wide <- do.call(cbind, split({0}${1}, {0}${2}))\n"
+                          "{0}_test <- computed(\"{0}\", friedman.test(round({0}_wide, 9)))\n"
+                          "{0}_p <- show_friedman(\"{0}\", {0}_test, {0}_wide, {3}, {4})\n",
+                          id, section.planned.value, section.planned.factors.front(), value, factor);
     return text +
-           fmt::format("{0}_p <- show_{1}(\"{0}\", {0}, {2}, {3})\n", id, section.test(), value, section.factors());
+           fmt::format("{0}_test <- computed(\"{0}\", t.test({0}${1}))\nshow_mean(\"{0}\", {0}_test, {0}, {2})\n", id,
+                       section.planned.value, value);
 }
 
 /// What stands beside the planned test of a measure.
@@ -222,6 +243,8 @@ std::string headOf(const StudyData& study, const Names& attached) {
 
 std::string courseText() {
     return "# Who and what is counted\n\n" + chunk("flow", "show_flow(participants, sessions, attempts, studied)\n") +
+           "# Deviations from the plan\n\n" +
+           chunk("deviations", "show_deviations(participants, sessions, attempts, studied, protocols)\n") +
            "# Balance of positions\n\n" + chunk("balance", "show_balance(trials)\n") +
            "# Timing of loop and pictures\n\n" +
            chunk("timing",
@@ -229,8 +252,15 @@ std::string courseText() {
                  "of_kind(read_table(\"presentation.csv\"), studied))\n");
 }
 
-std::string exploratoryText() {
-    return "# Exploratory\n\nNothing from here on was planned.\n\n" +
+/// `outcomes`: measures that analyses plan.
+std::string exploratoryText(const Names& outcomes) {
+    std::string text = "# Exploratory\n\nNothing from here on was planned.\n\n";
+    for (const std::string& outcome : outcomes)
+        text += "## Course of " + marked(outcome) + "\n\n" +
+                chunk("course-" + outcome + ", fig.height = course_height(trials)",
+                      "plot_course(trials, " + rText(outcome) + ")\n") +
+                "Each point is a trial, the line the median of a place; time-outs are at their limit.\n\n";
+    return text + "## Means and scores\n\n" +
            chunk("measures", "show_measures(cells, grep(\"[.](restricted_)?mean$\", names(cells), value = TRUE))\n") +
            chunk("scores", "show_scores(of_kind(read_table(\"questionnaire_scores.csv\"), studied))\n") +
            "# Programs\n\n" + chunk("programs", "show_programs()\n") +
@@ -247,6 +277,7 @@ AnalysisText writeAnalysis(const StudyData& study) {
     };
     for (const char* package : {"rmarkdown", "knitr", "jsonlite", "digest"}) need(package);
     std::string sections;
+    Names outcomes;
     bool reads_thresholds = false;
     const std::vector<exporter::Cell> cells = exporter::cellsOf(study);
     for (const PlannedTest& planned : exporter::plannedTests(study, cells)) {
@@ -258,7 +289,10 @@ AnalysisText writeAnalysis(const StudyData& study) {
         sections += sectionText(section);
         reads_thresholds = reads_thresholds || planned.ofThresholds();
         for (const std::string& package : wordsOf(planned.analysis->test).packages) need(package);
-        if (exporter::isCensored(planned.analysis->outcome) && !planned.factors.empty()) need("survival");
+        const std::string& outcome = planned.analysis->outcome;
+        if (!outcome.empty() && std::find(outcomes.begin(), outcomes.end(), outcome) == outcomes.end())
+            outcomes.push_back(outcome);
+        if (exporter::isCensored(outcome) && !planned.factors.empty()) need("survival");
     }
     Names attached;
     for (const char* package : {"afex", "survival"})
@@ -269,7 +303,7 @@ AnalysisText writeAnalysis(const StudyData& study) {
     if (reads_thresholds)
         written.text +=
             chunk("thresholds, include = FALSE", "thresholds <- of_kind(read_table(\"thresholds.csv\"), studied)\n");
-    written.text += sections + exploratoryText();
+    written.text += sections + exploratoryText(outcomes);
     return written;
 }
 

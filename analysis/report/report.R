@@ -89,10 +89,15 @@ num <- function(id, x, digits = 3, decimals = decimals_of(x, digits)) keep(id, x
 count <- function(id, n) keep(id, n, if (is.na(n)) "&ndash;" else formatC(n, format = "d"))
 
 # Degrees of freedom: whole where they are.
-degrees <- function(id, df) if (isTRUE(abs(df - round(df)) < 1e-9)) keep(id, df, formatC(round(df), format = "d")) else num(id, df)
+degrees <- function(id, df) if (isTRUE(abs(df - round(df)) < 0.005)) keep(id, df, formatC(round(df), format = "d")) else num(id, df)
 
 p_value <- function(id, p) keep(id, p, if (length(p) == 1 && isTRUE(p < 0.001)) "&lt;&thinsp;0.001" else
   if (length(p) == 1 && is.finite(p)) formatC(p, digits = 3, format = "f") else "&ndash;")
+
+shown_p <- function(id, p) {
+  p_value(id, p)
+  again_p(id)
+}
 
 again_p <- function(id) if (isTRUE(report$results[[id]] < 0.001)) again(id) else paste0("= ", again(id))
 
@@ -181,6 +186,26 @@ show_flow <- function(participants, sessions, attempts, studied) {
   if (length(cut_off) > 0) para("Counted though it did not come to its end: the session of ", name(paste(cut_off, collapse = ", ")), ".")
   for (other in names(others))
     para("Left apart from all that follows: ", count(paste0("flow.apart.", other), others[[other]]), " of kind ", name(other), ".")
+}
+
+# What became otherwise than planned, as far as the program knows it.
+show_deviations <- function(participants, sessions, attempts, studied, protocols) {
+  plans <- jsonlite::fromJSON("plan.json", simplifyVector = FALSE)$plans
+  items <- character()
+  for (i in seq_along(plans)) {
+    planned <- plans[[i]]$plan$participants
+    counted <- length(counted_people(sessions, studied, plans[[i]]$protocol_sha256))
+    if (is.numeric(planned) && planned != counted)
+      items <- c(items, paste0("Planned were ", count(paste0("deviation.", i, ".planned"), planned), " participants, counted are ",
+                               count(paste0("deviation.", i, ".counted"), counted), if (length(plans) > 1) paste0(" (protocol ", name(substr(plans[[i]]$protocol_sha256, 1, 8)), ")"), "."))
+  }
+  if (length(protocols) > 1) items <- c(items, paste0("The protocol was changed: ", count("deviation.protocols", length(protocols)), " versions have data."))
+  out <- participants[participants$kind == studied & participants$status %in% "excluded", ]
+  if (nrow(out) > 0) items <- c(items, paste0("Excluded by hand: ", paste0(name(out$participant_id), " (", name(ifelse(is.na(out$status_reason), "no reason stored", out$status_reason)), ")", collapse = ", "), "."))
+  invalid <- sum(of_kind(attempts, studied)$valid == 0)
+  if (invalid > 0) items <- c(items, paste0("Not valid: ", count("deviation.invalid", invalid), " attempts, for reasons that stand above."))
+  if (length(items) == 0) return(para("Nothing that the program can tell became otherwise than planned.", class = "note"))
+  html("<ul>", paste0("<li>", items, "</li>", collapse = "\n"), "</ul>")
 }
 
 # How conditions fell on the places of a block: counts, and what came before.
@@ -313,11 +338,12 @@ plot_people <- function(data, value, factors) {
   marks <- if (is.null(axis_factor)) "" else levels(data[[axis_factor]])
   wrapped <- if (max(nchar(marks)) * length(marks) > 60 / columns) gsub("([_ ])", "\\1\n", marks) else marks
   lines <- max(lengths(strsplit(wrapped, "\n")), 1)
-  par(mar = c(2.6 + lines, 4.2, 1.9, 0.6))
+  par(mar = c(2.6 + lines, 4.6, 1.9, 0.6))
   for (panel in panels) {
     its <- data[where == panel, ]
     x <- if (is.null(axis_factor)) rep(1L, nrow(its)) else as.integer(its[[axis_factor]])
-    plot(NA, xlim = c(0.6, length(marks) + 0.4), ylim = range, xaxt = "n", xlab = "", ylab = value)
+    plot(NA, xlim = c(0.6, length(marks) + 0.4), ylim = range, xaxt = "n", xlab = "", ylab = "")
+    title(ylab = value, line = 3.4)
     if (!is.null(axis_factor)) title(xlab = axis_factor, line = 0.6 + lines)
     grid(NA, NULL, col = "#e4e4e4", lty = 1)
     title(main = panel, font.main = 1, cex.main = 1, adj = 0, line = 0.5)
@@ -351,8 +377,7 @@ note_normal <- function(id, x, what) {
   if (length(x) < 3 || length(x) > 5000 || diff(range(x)) < 1e-12) return(invisible())
   test <- shapiro.test(x)
   para("For information; no choice hangs on it. Shapiro and Wilk&rsquo;s test of ", what, ": <i>W</i> = ",
-       num(paste0(id, ".shapiro.w"), test$statistic), ", <i>p</i> ", { p_value(paste0(id, ".shapiro.p"), test$p.value); again_p(paste0(id, ".shapiro.p")) },
-       ".", class = "note")
+       num(paste0(id, ".shapiro.w"), test$statistic), ", <i>p</i> ", shown_p(paste0(id, ".shapiro.p"), test$p.value), ".", class = "note")
 }
 
 note_spheric <- function(id, fit) {
@@ -360,7 +385,7 @@ note_spheric <- function(id, fit) {
   if (is.null(tests) || nrow(tests) == 0) return(invisible())
   para("Mauchly&rsquo;s test of sphericity: ", paste0(vapply(seq_len(nrow(tests)), function(i) {
     of <- paste0(id, ".", rownames(tests)[i], ".mauchly")
-    paste0(name(gsub(":", " \u00d7 ", rownames(tests)[i])), " <i>W</i> = ", num(paste0(of, "_w"), tests[i, 1]), ", <i>p</i> ", { p_value(paste0(of, "_p"), tests[i, 2]); again_p(paste0(of, "_p")) })
+    paste0(name(gsub(":", " \u00d7 ", rownames(tests)[i])), " <i>W</i> = ", num(paste0(of, "_w"), tests[i, 1]), ", <i>p</i> ", shown_p(paste0(of, "_p"), tests[i, 2]))
   }, ""), collapse = "; "), ". It decides nothing: both <i>p</i> stand above.", class = "note")
 }
 
@@ -380,25 +405,21 @@ copy_t <- function(id, what)
            again(paste0(id, ".df")), ") = ", again(paste0(id, ".t")), ", <i>p</i> ", again_p(paste0(id, ".p")), ", Hedges&rsquo; <i>g</i> = ",
            again(paste0(id, ".g")), " ", again_interval(paste0(id, ".g")), ".")
 
-two_levels <- function(data, value, factor) split(data[[value]], data[[factor]])
-
-show_paired_t <- function(id, data, value, factor) computed(id, {
-  pair <- two_levels(data, value, factor)
-  test <- t.test(pair[[1]], pair[[2]], paired = TRUE)
+# `pair`: the values at the two levels of a factor, persons in one order; `test`: what t.test() made of them.
+show_paired_t <- function(id, test, pair, value, factor) if (!is.null(test)) computed(id, {
   what <- paste(name(names(pair)[1]), "&minus;", name(names(pair)[2]))
-  show_t(id, test, what, effectsize::hedges_g(pair[[1]] - pair[[2]]))
-  n <- length(pair[[1]])
-  para("Cohen&rsquo;s <i>d<sub>z</sub></i> = ", num(paste0(id, ".dz"), mean(pair[[1]] - pair[[2]]) / sd(pair[[1]] - pair[[2]])),
+  d <- pair[[1]] - pair[[2]]
+  show_t(id, test, what, effectsize::hedges_g(d))
+  para("Cohen&rsquo;s <i>d<sub>z</sub></i> = ", num(paste0(id, ".dz"), mean(d) / sd(d)),
        ". With so many participants the test finds a <i>d<sub>z</sub></i> of ",
-       num(paste0(id, ".sensitivity"), power.t.test(n, sd = 1, power = 0.8, type = "paired")$delta), " in ", name("80 %"), " of studies.", class = "note")
-  note_normal(id, pair[[1]] - pair[[2]], "the differences")
+       num(paste0(id, ".sensitivity"), power.t.test(length(d), sd = 1, power = 0.8, type = "paired")$delta),
+       " in ", name("80 %"), " of studies.", class = "note")
+  note_normal(id, d, "the differences")
   copy_t(id, paste("The mean difference", what, "of", name(value)))
   setNames(test$p.value, factor)
 })
 
-show_welch_t <- function(id, data, value, factor) computed(id, {
-  pair <- two_levels(data, value, factor)
-  test <- t.test(pair[[1]], pair[[2]])
+show_welch_t <- function(id, test, pair, value, factor) if (!is.null(test)) computed(id, {
   what <- paste(name(names(pair)[1]), "&minus;", name(names(pair)[2]))
   show_t(id, test, what, effectsize::hedges_g(pair[[1]], pair[[2]], pooled_sd = FALSE))
   note_normal(id, unlist(lapply(pair, function(x) x - mean(x))), "the residuals")
@@ -406,17 +427,17 @@ show_welch_t <- function(id, data, value, factor) computed(id, {
   setNames(test$p.value, factor)
 })
 
-show_mean <- function(id, data, value) computed(id, {
-  test <- t.test(data[[value]])
-  html_table(c("", "mean", paste(percent, "interval"), "df"), list(c(name(value), estimate(id, test$estimate, test$conf.int[1], test$conf.int[2]),
-             degrees(paste0(id, ".df"), test$parameter))))
+show_mean <- function(id, test, data, value) if (!is.null(test)) computed(id, {
+  html_table(c("", "mean", paste(percent, "interval"), "df"),
+             list(c(name(value), estimate(id, test$estimate, test$conf.int[1], test$conf.int[2]), degrees(paste0(id, ".df"), test$parameter))))
   logarithmic <- startsWith(value, "log10_")
   if (logarithmic)
-    para("In the unit of the levels: ", paste(estimate(id, 10^test$estimate, 10^test$conf.int[1], 10^test$conf.int[2], "level"), collapse = " "), ", a geometric mean.")
+    para("In the unit of the levels: ", paste(estimate(id, 10^test$estimate, 10^test$conf.int[1], 10^test$conf.int[2], "level"), collapse = " "),
+         ", a geometric mean.")
   note_normal(id, data[[value]], "the values")
   shown <- paste0(id, if (logarithmic) ".level" else ".estimate")
-  sentence("The ", if (logarithmic) "geometric ", "mean of ", name(if (logarithmic) sub("log10_", "", value) else value), " was ", again(shown), ", ",
-           percent, " CI ", again_interval(shown), ", <i>n</i> = ", again(paste0(id, ".n")), ".")
+  sentence("The ", if (logarithmic) "geometric ", "mean of ", name(if (logarithmic) sub("log10_", "", value) else value), " was ", again(shown),
+           ", ", percent, " CI ", again_interval(shown), ", <i>n</i> = ", again(paste0(id, ".n")), ".")
 })
 
 # Hodges and Lehmann's estimate and its interval: the median of all means of two, or of all differences between two
@@ -448,42 +469,41 @@ copy_ranks <- function(id, what)
   sentence(what, " was ", again(paste0(id, ".estimate")), ", ", percent, " CI ", again_interval(paste0(id, ".estimate")), ", <i>z</i> = ",
            again(paste0(id, ".z")), ", exact <i>p</i> ", again_p(paste0(id, ".p")), ", rank-biserial <i>r</i> = ", again(paste0(id, ".r")), ".")
 
-show_wilcoxon <- function(id, data, value, factor) computed(id, {
-  pair <- two_levels(data, value, factor)
+show_wilcoxon <- function(id, test, pair, value, factor) if (!is.null(test)) computed(id, {
   what <- paste(name(names(pair)[1]), "&minus;", name(names(pair)[2]))
-  test <- signed_ranks(pair[[1]] - pair[[2]])
   html_table(rank_head, list(rank_row(id, what, test)))
   copy_ranks(id, paste("The shift", what, "of", name(value)))
   setNames(test$p, factor)
 })
 
-show_mann_whitney <- function(id, data, value, factor) computed(id, {
-  pair <- lapply(two_levels(data, value, factor), round, 9)
-  what <- paste(name(names(pair)[1]), "&minus;", name(names(pair)[2]))
-  n <- lengths(pair)
-  test <- coin::wilcox_test(y ~ g, data.frame(y = unlist(pair), g = factor(rep(names(pair), n), names(pair))), distribution = "exact")
-  w <- sum(outer(pair[[1]], pair[[2]], ">")) + sum(outer(pair[[1]], pair[[2]], "==")) / 2
-  shift <- c(hodges_lehmann(as.vector(outer(pair[[1]], pair[[2]], "-")), qwilcox(0.025, n[1], n[2])),
-             list(z = as.numeric(coin::statistic(test)), p = as.numeric(coin::pvalue(test)), r = unname(2 * w / prod(n) - 1)))
-  html_table(rank_head, list(rank_row(id, what, shift)))
-  copy_ranks(id, paste("The shift", what, "of", name(value)))
-  setNames(shift$p, factor)
-})
+# Ranks of two samples; rounded first, as above.
+rank_sums <- function(x, y) {
+  x <- round(x, 9)
+  y <- round(y, 9)
+  samples <- data.frame(value = c(x, y), sample = factor(rep(1:2, c(length(x), length(y)))))
+  test <- coin::wilcox_test(value ~ sample, samples, distribution = "exact")
+  above <- mean(outer(x, y, ">")) - mean(outer(x, y, "<"))
+  c(hodges_lehmann(as.vector(outer(x, y, "-")), qwilcox(0.025, length(x), length(y))),
+    list(z = as.numeric(coin::statistic(test)), p = as.numeric(coin::pvalue(test)), r = above))
+}
 
-show_friedman <- function(id, data, value, factor) computed(id, {
-  wide <- do.call(cbind, two_levels(data, value, factor))
+show_mann_whitney <- show_wilcoxon
+
+# `wide`: a column a level, a row a person.
+show_friedman <- function(id, test, wide, value, factor) if (!is.null(test)) computed(id, {
   pairs <- combn(ncol(wide), 2)
   tests <- lapply(seq_len(ncol(pairs)), function(i) signed_ranks(wide[, pairs[1, i]] - wide[, pairs[2, i]]))
   holm <- p.adjust(vapply(tests, function(test) test$p, 0), "holm")
-  html_table(c(rank_head, "Holm"), lapply(seq_along(tests), function(i)
-    c(rank_row(paste0(id, ".pair.", factor, ".", i), paste(name(colnames(wide)[pairs[1, i]]), "&minus;", name(colnames(wide)[pairs[2, i]])), tests[[i]]),
-      p_value(paste0(id, ".pair.", factor, ".", i, ".p_holm"), holm[i]))))
-  test <- friedman.test(round(wide, 9))
-  html_table(c("Friedman", "&chi;&sup2;", "df", "<i>p</i>", "Kendall&rsquo;s <i>W</i>"), list(c(name(factor), num(paste0(id, ".chisq"), test$statistic),
-             degrees(paste0(id, ".df"), test$parameter), p_value(paste0(id, ".p"), test$p.value),
-             num(paste0(id, ".w"), test$statistic / (nrow(wide) * (ncol(wide) - 1))))))
-  sentence("Friedman&rsquo;s test of ", name(value), " over ", name(factor), ": &chi;&sup2;(", again(paste0(id, ".df")), ") = ", again(paste0(id, ".chisq")),
-           ", <i>p</i> ", again_p(paste0(id, ".p")), ", <i>W</i> = ", again(paste0(id, ".w")), ".")
+  html_table(c(rank_head, "Holm"), lapply(seq_along(tests), function(i) {
+    pair <- paste0(id, ".pair.", factor, ".", i)
+    c(rank_row(pair, paste(name(colnames(wide)[pairs[1, i]]), "&minus;", name(colnames(wide)[pairs[2, i]])), tests[[i]]),
+      p_value(paste0(pair, ".p_holm"), holm[i]))
+  }))
+  html_table(c("Friedman", "&chi;&sup2;", "df", "<i>p</i>", "Kendall&rsquo;s <i>W</i>"),
+             list(c(name(factor), num(paste0(id, ".chisq"), test$statistic), degrees(paste0(id, ".df"), test$parameter),
+                    p_value(paste0(id, ".p"), test$p.value), num(paste0(id, ".w"), test$statistic / (nrow(wide) * (ncol(wide) - 1))))))
+  sentence("Friedman&rsquo;s test of ", name(value), " over ", name(factor), ": &chi;&sup2;(", again(paste0(id, ".df")), ") = ",
+           again(paste0(id, ".chisq")), ", <i>p</i> ", again_p(paste0(id, ".p")), ", <i>W</i> = ", again(paste0(id, ".w")), ".")
   setNames(test$p.value, factor)
 })
 
@@ -597,21 +617,49 @@ show_censored <- function(id, trials, planned, within = character(), between = c
          ": means of times say less than what was seen. Report both.", class = "warning")
 })
 
-# What practice did: the outcome over the place in the block, between trials of one person and condition.
+# What practice and the trial before did: the outcome over the place in the block, and by the condition made before,
+# between trials of one person and condition.
 show_position <- function(id, trials, measure) computed(paste0(id, ".position"), {
   trials <- trials[!is.na(trials[[measure]]) & !is.na(trials$order_position), ]
-  trials$y <- trials[[measure]]
   several <- function(column) if (length(unique(trials[[column]])) > 1) paste(" +", column) else ""
-  fit <- lm(as.formula(paste0("y ~ order_position", several("participant_id"), several("condition"))), trials)
-  if (df.residual(fit) < 1 || is.na(coef(fit)["order_position"])) return(invisible())
-  slope <- suppressWarnings(summary(fit))$coefficients["order_position", ]
+  fit <- lm(as.formula(paste0(measure, " ~ order_position", several("participant_id"), several("condition"))), trials)
+  if (df.residual(fit) < 1 || is.na(coef(fit)["order_position"]) || deviance(fit) < 1e-20) return(invisible())
+  slope <- summary(fit)$coefficients["order_position", ]
   bounds <- confint(fit, "order_position")
   para("Over the block ", name(measure), " changed by ", paste(estimate(paste0(id, ".position"), slope[1], bounds[1], bounds[2], "slope"), collapse = " "),
-       " a trial, <i>p</i> ", { p_value(paste0(id, ".position.p"), slope[4]); again_p(paste0(id, ".position.p")) },
-       " (persons and conditions held).", class = "note")
+       " a trial, <i>p</i> ", shown_p(paste0(id, ".position.p"), slope[4]), " (persons and conditions held).", class = "note")
+  after <- trials[!is.na(trials$previous_condition), ]
+  without_it <- lm(formula(fit), after)
+  with_it <- lm(update(formula(fit), . ~ . + previous_condition), after)
+  test <- if (df.residual(with_it) > 0 && deviance(with_it) > 1e-20) anova(without_it, with_it)
+  if (is.null(test) || is.na(test$F[2])) return(invisible())
+  para("The condition before a trial: <i>F</i>(", degrees(paste0(id, ".carry_over.df1"), test$Df[2]), ", ", degrees(paste0(id, ".carry_over.df2"), test$Res.Df[2]),
+       ") = ", num(paste0(id, ".carry_over.F"), test$F[2]), ", <i>p</i> ", shown_p(paste0(id, ".carry_over.p"), test$`Pr(>F)`[2]), ".", class = "note")
 })
 
 # ---- Exploratory -----------------------------------------------------------------------------------------------------
+
+# A measure over the places of a block: every trial as a point, the median of each place as a line.
+plot_course <- function(trials, measure) {
+  trials <- trials[!is.na(trials[[measure]]) & !is.na(trials$order_position), ]
+  blocks <- unique(trials$block)
+  if (length(blocks) == 0) return(invisible())
+  columns <- columns_of(blocks)
+  old <- par(mfrow = c(ceiling(length(blocks) / columns), columns), mar = c(3.6, 4.6, 1.9, 0.6), mgp = c(2.3, 0.5, 0), tcl = -0.25, las = 1,
+             bty = "l", cex = 0.8, fg = "#444444", col.axis = "#444444", col.lab = "#444444")
+  on.exit(par(old))
+  for (block in blocks) {
+    its <- trials[trials$block == block, ]
+    plot(its$order_position, its[[measure]], pch = 16, cex = 0.55, col = "#00000055", xlab = "place in the block", ylab = "")
+    title(ylab = measure, line = 3.4)
+    grid(NA, NULL, col = "#e4e4e4", lty = 1)
+    title(main = block, font.main = 1, cex.main = 1, adj = 0, line = 0.5)
+    middle <- tapply(its[[measure]], its$order_position, median)
+    lines(as.numeric(names(middle)), middle, col = "#1f5a85", lwd = 2.2)
+  }
+}
+
+course_height <- function(trials) max(3, 2.7 * ceiling(length(unique(trials$block)) / columns_of(unique(trials$block))))
 
 # Every measure in every condition of a block, mean of persons' means.
 show_measures <- function(cells, columns) {

@@ -248,6 +248,13 @@ TEST_F(Report, NamesWhomCompleteCasesLeaveOut) {
     EXPECT_NE(said.find("200 of 200 times"), std::string::npos) << said;
 }
 
+TEST_F(Report, SaysDifferOfTimesThatTimeOutsCutOffWhereTheyDo) {
+    // Truth: closed form (the shares of time-outs are drawn by the script): 200 studies that differ, 2 000 that do not.
+    int code = 0;
+    const std::string said = askR(std::string(kSource) + "report_censored.R '" + out().string() + "'", code);
+    EXPECT_EQ(code, 0) << said;
+}
+
 TEST_F(Report, HasTheTablesOfAnExportAndNoPlaceOfTheMachine) {
     // Truth: invariant (`passung export` of the same data).
     ASSERT_EQ(runProgram(folder_->path(), {"export", "s.db", "--out", "tables", "--no-samples"}).exit_code, 0);
