@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <set>
+#include <string_view>
 
 #include "analysis/export/analysis_table.h"
 #include "analysis/export/cells.h"
@@ -58,15 +58,21 @@ std::string rTexts(const Names& texts) {
     return quoted.size() == 1 ? quoted.front() : "c(" + exporter::joined(quoted, ", ") + ")";
 }
 
-/// A word of the study in running text of Markdown, whatever letters it has.
-std::string marked(const std::string& word) {
-    std::string text = "[";
-    for (const char c : word) {
-        if (std::ispunct(static_cast<unsigned char>(c)) != 0) text += '\\';
-        text += c;
+/// A text of the study as Markdown that shows it as it is: what could begin markup, mathematics or code of R is written
+/// as its number.
+std::string plainText(const std::string& text) {
+    std::string plain;
+    for (const char c : text) {
+        if (std::string_view("`*[]<>&#$\\^~|@\"'{}!").find(c) == std::string_view::npos)
+            plain += c;
+        else
+            plain += fmt::format("&#{};", static_cast<int>(c));
     }
-    return text + "]{.name}";
+    return plain;
 }
+
+/// The same as a word that stands out.
+std::string marked(const std::string& word) { return "[" + plainText(word) + "]{.name}"; }
 
 std::string chunk(const std::string& options, const std::string& code) {
     return "```{r " + options + "}\n" + code + "```\n\n";
@@ -223,21 +229,23 @@ std::string headOf(const StudyData& study, const Names& attached) {
     for (const store::ProtocolRow& protocol : study.protocols) hashes.push_back(protocol.sha256);
     std::string libraries;
     for (const std::string& package : attached) libraries += "library(" + package + ")\n";
-    return "---\ntitle: " + jsonText(title) +
+    return "---\ntitle: " + jsonText(plainText(title)) +
            "\noutput:\n  html_document:\n    theme: null\n    css: report.css\n    highlight: null\n    mathjax: null\n"
            "    toc: true\n    self_contained: true\n---\n\n" +
            "<!-- Written from the plan of the study; yours to change. Reads only files that lie beside it. -->\n\n" +
-           chunk("setup, include = FALSE",
-                 "knitr::opts_chunk$set(echo = FALSE, warning = FALSE, message = FALSE, results = \"asis\",\n"
-                 "                      fig.width = 7.4, dev = \"svg\")\n"
-                 "invisible(Sys.setlocale(\"LC_COLLATE\", \"C\"))\n" +
-                     libraries + "source(\"report.R\")\ncheck_tables()\n\n" + "studied <- " + rText(kindOf(study)) +
-                     "  # kind of participants; others are left apart\n" + "protocols <- " +
-                     (hashes.empty() ? "character()" : rTexts(hashes)) + "\n" +
-                     "participants <- read_table(\"participants.csv\")\nsessions <- read_table(\"sessions.csv\")\n"
-                     "attempts <- read_table(\"trials.csv\")\n"
-                     "trials <- subset(attempts, kind == studied & counted == 1)\n"
-                     "cells <- subset(read_table(\"cells_long.csv\"), kind == studied)\n") +
+           chunk(
+               "setup, include = FALSE",
+               "knitr::opts_chunk$set(echo = FALSE, warning = FALSE, message = FALSE, results = \"asis\",\n"
+               "                      fig.width = 7.4, dev = \"svg\")\n"
+               "invisible(Sys.setlocale(\"LC_COLLATE\", \"C\"))\n" +
+                   libraries +
+                   "source(\"report.R\")\nsource(\"report_course.R\")\nsource(\"report_tests.R\")\ncheck_tables()\n\n" +
+                   "studied <- " + rText(kindOf(study)) + "  # kind of participants; others are left apart\n" +
+                   "protocols <- " + (hashes.empty() ? "character()" : rTexts(hashes)) + "\n" +
+                   "participants <- read_table(\"participants.csv\")\nsessions <- read_table(\"sessions.csv\")\n"
+                   "attempts <- read_table(\"trials.csv\")\n"
+                   "trials <- subset(attempts, kind == studied & counted == 1)\n"
+                   "cells <- subset(read_table(\"cells_long.csv\"), kind == studied)\n") +
            chunk("banner", "banner(studied)\n");
 }
 

@@ -10,7 +10,7 @@ struct FolderText {
     std::string_view name, text;
 };
 
-/// Written at build time from report.R and report.css.
+/// Written at build time from the files that CMakeLists.txt lists.
 std::vector<FolderText> folderTexts();
 
 }  // namespace passung::report

@@ -7,8 +7,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
-#include <cstring>
+#include <iterator>
 #include <optional>
 #include <sstream>
 #include <string_view>

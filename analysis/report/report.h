@@ -16,7 +16,7 @@ struct ReportOutcome {
 };
 
 /// Writes an export into the folder `out_dir` as exporter::exportAll() does, and with it analysis.Rmd, the planned
-/// analyses as a text of R that reads only what lies beside it, and what that needs: report.R, report.css. R, where it
+/// analyses as a text of R that reads only what lies beside it, and what that needs. R, where it
 /// is there with its packages, makes report.html and results.json of it; without it they are not there. No number about
 /// the data is computed here.
 Result<ReportOutcome> writeReport(const store::StoreReader& reader, const std::string& out_dir,

@@ -1,11 +1,12 @@
 # Rscript report_censored.R FOLDER: studies whose times were drawn here, through the model of censored times of the folder's
-# report.R. 24 persons with 8 trials in each of two conditions, times of successes alike: with 5 % and 30 % time-outs the
+# report_tests.R. 24 persons with 8 trials in each of two conditions, times of successes alike: with 5 % and 30 % time-outs the
 # conditions differ, in 95 % of 200 studies at least; with 15 % in both they do not, in 7 % of 2 000 at most.
 # Truth: the shares were drawn so. The model keeps 5 %; the rest of the mark is what 2 000 studies leave to chance, and small
 # samples. Where it differs and the means do not, the page has to say so.
 setwd(commandArgs(trailingOnly = TRUE)[1])
 library(survival)
 source("report.R")
+source("report_tests.R")
 set.seed(7)
 
 draw <- function(shares) {

@@ -1,8 +1,9 @@
 # Rscript report_left_out.R FOLDER TIMES: deletes cells and rows of cells_long.csv at random, so many times, and compares
-# whom the folder's report.R leaves out with complete.cases() on the wide table. Truth: R's reshape() and complete.cases().
+# whom the folder's report_tests.R leaves out with complete.cases() on the wide table. Truth: R's reshape() and complete.cases().
 arguments <- commandArgs(trailingOnly = TRUE)
 setwd(arguments[1])
 source("report.R")
+source("report_tests.R")
 whole <- read_table("cells_long.csv")
 whole <- whole[whole$block == "main", ]
 people <- sort(unique(whole$participant_id))

@@ -12,9 +12,9 @@ results <- setNames(suppressWarnings(as.numeric(sub("^.*\": ([^,]*),?$", "\\1", 
 if (!any(grepl("\"not_computed\": \\[\\]", lines))) wrong <- c(wrong, lines[seq(which(grepl("not_computed", lines)), length(lines))])
 
 body <- sub("^.*<body[^>]*>", "", page)
-body <- gsub("<(style|script)[^>]*>.*?</(style|script)>", "", body, perl = TRUE)
+body <- gsub("(?s)<(style|script)[^>]*>.*?</(style|script)>", "", body, perl = TRUE)
 body <- gsub("<img[^>]*>", "", body)
-spans <- regmatches(body, gregexpr("<span data-result=\"[^\"]*\">.*?</span>", body, perl = TRUE))[[1]]
+spans <- regmatches(body, gregexpr("(?s)<span data-result=\"[^\"]*\">.*?</span>", body, perl = TRUE))[[1]]
 ids <- sub("^<span data-result=\"([^\"]*)\">.*$", "\\1", spans)
 shown <- gsub("<sup>(.*?)</sup>", "e\\1", sub("^<span[^>]*>(.*)</span>$", "\\1", spans))
 shown <- gsub("\u2009|&thinsp;|&#8201;", "", gsub("\u2212|&minus;", "-", shown))
@@ -34,9 +34,9 @@ for (i in seq_along(spans)) {
 never <- setdiff(names(results), ids)
 if (length(never) > 0) wrong <- c(wrong, paste("never shown:", never))
 
-rest <- gsub("<span data-result=\"[^\"]*\">.*?</span>", "", body, perl = TRUE)
-rest <- gsub("<span class=\"name\">.*?</span>", "", rest, perl = TRUE)
-rest <- sub("<h1 class=\"title[^>]*>.*?</h1>", "", rest, perl = TRUE)
+rest <- gsub("(?s)<span data-result=\"[^\"]*\">.*?</span>", "", body, perl = TRUE)
+rest <- gsub("(?s)<span class=\"name\">.*?</span>", "", rest, perl = TRUE)
+rest <- sub("(?s)<h1 class=\"title[^>]*>.*?</h1>", "", rest, perl = TRUE)
 text <- gsub("&[#a-zA-Z0-9]+;", "", gsub("<[^>]*>", "", rest))
 stray <- regmatches(text, gregexpr(".{0,30}[0-9].{0,30}", text))[[1]]
 if (length(stray) > 0) wrong <- c(wrong, paste("a number without an id:", stray))

@@ -155,7 +155,7 @@ TEST_P(RandomProtocols, AreTestedInTheReportAsInBaseR) {
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomProtocols,
                          testing::Range(1u, std::getenv("PASSUNG_LONG") != nullptr ? 201u : 13u));
 
-/// A small study with six people, of whom one is excluded, and its report.
+/// A small study with six people, of whom one is excluded, and its report. Title and levels look like R and Markdown.
 class Report : public testing::Test {
 protected:
     static void SetUpTestSuite() {
@@ -163,11 +163,18 @@ protected:
         folder_ = new TempFolder;
         std::string text = smallStudy();
         const std::size_t factor = text.find("[[factor]]");
-        text.replace(
-            factor, text.find("[task]") - factor,
-            "[[factor]]\nname = \"method\"\nkey = \"contact.method\"\nlevels = [\"penalty\", \"god_object\"]\n"
-            "[[factor]]\nname = \"push\"\nkey = \"contact.stiffness_N_per_m\"\nlevels = [\"0.5 max\", \"max\"]\n\n");
+        text.replace(factor, text.find("[task]") - factor, R"([[factor]]
+name = "method"
+key = "contact.method"
+levels = [{ label = '"a" <i> \ & ü', value = "penalty" }, { label = '`r stop(2)` *b*', value = "god_object" }]
+[[factor]]
+name = "push"
+key = "contact.stiffness_N_per_m"
+levels = ["0.5 max", "max"]
+
+)");
         text.replace(text.find("timeout_s = 20"), 14, "timeout_s = 3.5");
+        text.insert(text.find("version = "), "title = 'A \"study\" of `r stop(1)` & <b> *more* $x$'\n");
         text.replace(text.find("repetitions = 3"), 15, "repetitions = 1");
         text += "[[analysis]]\noutcome = \"time_s\"\nfactors = [\"method\", \"push\"]\ntest = \"rm_anova\"\n";
         writeText(*folder_ / "study.toml", text);
@@ -207,7 +214,10 @@ TEST_F(Report, ShowsEveryNumberWithItsEntryOfTheResults) {
     const std::string said = checkPage(out().string(), code);
     EXPECT_EQ(code, 0) << said;
     EXPECT_EQ(report_.err, "");
-    EXPECT_NE(readText(out() / "report.html").find("Simulated participants"), std::string::npos);
+    const std::string page = readText(out() / "report.html");
+    EXPECT_NE(page.find("Simulated participants"), std::string::npos);
+    EXPECT_NE(page.find("&quot;study&quot; of `r stop(1)` &amp; &lt;b&gt; *more* $x$</title>"), std::string::npos);
+    EXPECT_NE(page.find("`r stop(2)` *b*"), std::string::npos);
 }
 
 TEST_F(Report, IsMadeAgainByRAloneWithTheSameResults) {

@@ -1,0 +1,443 @@
+# A planned analysis: persons, cells, pictures, tests, and what stands beside them.
+
+# ---- An analysis -----------------------------------------------------------------------------------------------------
+
+combination <- function(data, factors) {
+  if (length(factors) == 0) return(rep("", nrow(data)))
+  do.call(paste, c(unname(lapply(data[factors], as.character)), sep = " / "))
+}
+
+# The combinations of the factors that occur, in the order of their levels.
+combinations <- function(data, factors) {
+  if (length(factors) == 0) return(data.frame(row.names = 1L))
+  at <- unique(data[factors])
+  at <- at[do.call(order, unname(as.list(at))), , drop = FALSE]
+  rownames(at) <- NULL
+  at
+}
+
+# One mean per person and combination of the factors, of those persons who have a value at each combination within
+# persons. Keeps the others by code, with what they lack.
+means_of_people <- function(id, rows, people, value, within = character(), between = character()) {
+  at <- combination(rows, within)
+  wanted <- combination(combinations(rows, within), within)
+  lacks <- function(person) {
+    its <- rows$participant_id == person
+    if (!any(its)) return("no row of this analysis")
+    if (anyNA(rows[its, between])) return("no group")
+    missing <- setdiff(wanted, at[its & !is.na(rows[[value]])])
+    if (length(missing) == 0) NA_character_ else if (length(within) == 0) "no value" else paste("no value at",
+      paste(missing, collapse = "; "))
+  }
+  why <- vapply(people, lacks, NA_character_, USE.NAMES = FALSE)
+  report$left_out[[id]] <- data.frame(participant_id = people[!is.na(why)], reason = why[!is.na(why)])
+  rows <- rows[rows$participant_id %in% people[is.na(why)], ]
+  data <- if (nrow(rows) > 0) aggregate(rows[value], rows[c("participant_id", within, between)], mean,
+                                        na.rm = TRUE) else
+    rows[c("participant_id", within, between, value)]
+  data[c("participant_id", within, between)] <- lapply(data[c("participant_id", within, between)],
+    function(x) droplevels(factor(x)))
+  out <- report$left_out[[id]]
+  para("Analysed: ", count(id %.% "n", nlevels(data$participant_id)), " of ",
+       count(id %.% "n_counted", length(people)),
+       " counted participants.",
+       if (nrow(out) > 0) paste0(" Left out: ",
+                                 paste0(name(out$participant_id), " (", name(out$reason), ")", collapse = ", "), "."))
+  data[do.call(order, unname(as.list(data[c("participant_id", within)]))), ]
+}
+
+show_cells <- function(id, data, value, factors) {
+  if (nrow(data) == 0) return(invisible())
+  at <- combinations(data, factors)
+  where <- combination(data, factors)
+  decimals <- decimals_of(sd(data[[value]]), 3)
+  at[] <- lapply(at, as.character)
+  report$cells[[id]] <- cbind(data.frame(cell = seq_len(nrow(at))), at)
+  html_table(c(if (length(factors) > 0) name(factors), "n", "mean", "sd", paste(percent, "interval of the mean")),
+             words = length(factors),
+             caption = paste("Cells of", name(value)), lapply(seq_len(nrow(at)), function(i) {
+    x <- data[[value]][where == combination(at, factors)[i]]
+    half <- if (length(x) > 1) qt(0.975, length(x) - 1) * sd(x) / sqrt(length(x)) else NA
+    cell <- id %.% "cell" %.% i
+    c(if (length(factors) > 0) name(unlist(at[i, ])), count(cell %.% "n", length(x)),
+      num(cell %.% "mean", mean(x), decimals = decimals),
+      num(cell %.% "sd", sd(x), decimals = decimals), interval(cell, mean(x) - half, mean(x) + half, decimals))
+  }))
+}
+
+# Pictures: the factor with most levels is the axis, all others make the panels.
+axis_of <- function(data, factors) if (length(factors) > 0) factors[which.max(vapply(data[factors], nlevels, 1L))]
+
+panels_of <- function(data, factors) {
+  rest <- setdiff(factors, axis_of(data, factors))
+  if (length(rest) > 0) combination(combinations(data, rest), rest) else ""
+}
+
+columns_of <- function(panels) if (length(panels) %in% c(2, 4)) 2 else min(3, length(panels))
+
+picture_height <- function(data, factors) {
+  panels <- panels_of(data, factors)
+  max(3, 2.7 * ceiling(length(panels) / columns_of(panels)))
+}
+
+# Every person as a thin line; before them means with their intervals.
+plot_people <- function(data, value, factors) {
+  if (nrow(data) == 0) return(invisible())
+  blue <- "#1f5a85"
+  axis_factor <- axis_of(data, factors)
+  rest <- setdiff(factors, axis_factor)
+  panels <- panels_of(data, factors)
+  columns <- columns_of(panels)
+  old <- par(mfrow = c(ceiling(length(panels) / columns), columns), mar = c(4.2, 4.2, 1.9, 0.6), mgp = c(2.9, 0.5, 0),
+             tcl = -0.25, las = 1, bty = "l", cex = 0.8, fg = "#444444", col.axis = "#444444", col.lab = "#444444")
+  on.exit(par(old))
+  half_width <- function(y) if (length(y) > 1) qt(0.975, length(y) - 1) * sd(y) / sqrt(length(y)) else 0
+  range <- range(data[[value]], unlist(tapply(data[[value]], combination(data, factors),
+    function(y) mean(y) + half_width(y) * c(-1, 1))))
+  if (diff(range) == 0) range <- range + c(-0.5, 0.5)
+  where <- combination(data, rest)
+  marks <- if (is.null(axis_factor)) "" else levels(data[[axis_factor]])
+  wrapped <- if (max(nchar(marks)) * length(marks) > 60 / columns) gsub("([_ ])", "\\1\n", marks) else marks
+  lines <- max(lengths(strsplit(wrapped, "\n")), 1)
+  par(mar = c(2.6 + lines, 4.6, 1.9, 0.6))
+  for (panel in panels) {
+    its <- data[where == panel, ]
+    x <- if (is.null(axis_factor)) rep(1L, nrow(its)) else as.integer(its[[axis_factor]])
+    plot(NA, xlim = c(0.6, length(marks) + 0.4), ylim = range, xaxt = "n", xlab = "", ylab = "")
+    title(ylab = value, line = 3.4)
+    if (!is.null(axis_factor)) title(xlab = axis_factor, line = 0.6 + lines)
+    grid(NA, NULL, col = "#e4e4e4", lty = 1)
+    title(main = panel, font.main = 1, cex.main = 1, adj = 0, line = 0.5)
+    axis(1, seq_along(marks), FALSE)
+    axis(1, seq_along(marks), wrapped, tick = FALSE, padj = 1, line = -0.9,
+         cex.axis = if (length(marks) > 6 / columns) 0.8 else 1, gap.axis = 0.1)
+    for (person in unique(its$participant_id)) {
+      mine <- its$participant_id == person
+      lines(jitter_of(person, data) + x[mine], its[[value]][mine], col = "#00000055", type = "o", pch = 16,
+            cex = 0.55)
+    }
+    for (i in sort(unique(x))) {
+      y <- its[[value]][x == i]
+      segments(i, mean(y) - half_width(y), i, mean(y) + half_width(y), col = blue, lwd = 2.5)
+      points(i, mean(y), pch = 21, bg = "white", col = blue, lwd = 2, cex = 1.3)
+    }
+  }
+}
+
+under_picture <- function(file, column)
+  para("Each thin line or point is a participant; circles are means with their ", percent, " intervals. ",
+       name(column), ": ",
+       name(label_of(file, column)), ".", class = "note")
+
+# A little to the side, the same for a person everywhere, so that lines that meet can be told apart.
+jitter_of <- function(person, data) {
+  place <- match(person, levels(data$participant_id)) / (nlevels(data$participant_id) + 1)
+  0.12 * (place - 0.5)
+}
+
+# Checks that change nothing: the test that was planned is the one that is done.
+note_normal <- function(id, x, what) {
+  x <- x[is.finite(x)]
+  if (length(x) < 3 || length(x) > 5000 || diff(range(x)) < 1e-12) return(invisible())
+  test <- shapiro.test(x)
+  para("For information; no choice hangs on it. Shapiro and Wilk&rsquo;s test of ", what, ": <i>W</i> = ",
+       num(id %.% "shapiro.w", test$statistic), ", <i>p</i> ", shown_p(id %.% "shapiro.p", test$p.value),
+         ".", class = "note")
+}
+
+note_spheric <- function(id, fit) {
+  tests <- tryCatch(without("HF eps", summary(fit))$sphericity.tests, error = function(e) NULL)
+  if (is.null(tests) || nrow(tests) == 0) return(invisible())
+  para("Mauchly&rsquo;s test of sphericity: ", paste0(vapply(seq_len(nrow(tests)), function(i) {
+    of <- id %.% rownames(tests)[i] %.% "mauchly"
+    paste0(name(gsub(":", " \u00d7 ", rownames(tests)[i])), " <i>W</i> = ", num(paste0(of, "_w"), tests[i, 1]),
+           ", <i>p</i> ", shown_p(paste0(of, "_p"), tests[i, 2]))
+  }, ""), collapse = "; "), ". It decides nothing: both <i>p</i> stand above.", class = "note")
+}
+
+sentence <- function(...) para("<b>To copy:</b> ", ..., class = "sentence")
+
+# What t.test() says of two levels, or of one mean.
+show_t <- function(id, test, what, effect = NULL, symbol = "g") {
+  effects <- if (is.null(effect)) character() else
+    estimate(id, effect[[1]], effect$CI_low, effect$CI_high, symbol)
+  html_table(c("Estimate", "", paste(percent, "interval"), "<i>t</i>", "df", "<i>p</i>",
+               if (length(effects) > 0) c(paste0("<i>", symbol, "</i>"), "interval")),
+             list(c(what, estimate(id, if (length(test$estimate) == 2) -diff(test$estimate) else test$estimate,
+                                   test$conf.int[1], test$conf.int[2]),
+                    num(id %.% "t", test$statistic), degrees(id %.% "df", test$parameter),
+                      p_value(id %.% "p", test$p.value), effects)))
+}
+
+copy_t <- function(id, what)
+  sentence(what, " was ", again(id %.% "estimate"), ", ", percent, " CI ", again_interval(id %.% "estimate"),
+           ", <i>t</i>(",
+           again(id %.% "df"), ") = ", again(id %.% "t"), ", <i>p</i> ", again_p(id %.% "p"),
+             ", Hedges&rsquo; <i>g</i> = ",
+           again(id %.% "g"), " ", again_interval(id %.% "g"), ".")
+
+# `pair`: the values at the two levels of a factor, persons in one order; `test`: what t.test() made of them.
+show_paired_t <- function(id, test, pair, value, factor) if (!is.null(test)) computed(id, {
+  what <- paste(name(names(pair)[1]), "&minus;", name(names(pair)[2]))
+  d <- pair[[1]] - pair[[2]]
+  show_t(id, test, what, effectsize::hedges_g(d))
+  para("Cohen&rsquo;s <i>d<sub>z</sub></i> = ", num(id %.% "dz", mean(d) / sd(d)),
+       ". With so many participants the test finds a <i>d<sub>z</sub></i> of ",
+       num(id %.% "sensitivity", power.t.test(length(d), sd = 1, power = 0.8, type = "paired")$delta),
+       " in ", name("80 %"), " of studies.", class = "note")
+  note_normal(id, d, "the differences")
+  copy_t(id, paste("The mean difference", what, "of", name(value)))
+  setNames(test$p.value, factor)
+})
+
+show_welch_t <- function(id, test, pair, value, factor) if (!is.null(test)) computed(id, {
+  what <- paste(name(names(pair)[1]), "&minus;", name(names(pair)[2]))
+  show_t(id, test, what, effectsize::hedges_g(pair[[1]], pair[[2]], pooled_sd = FALSE))
+  note_normal(id, unlist(lapply(pair, function(x) x - mean(x))), "the residuals")
+  copy_t(id, paste("The difference of means", what, "of", name(value)))
+  setNames(test$p.value, factor)
+})
+
+show_mean <- function(id, test, data, value) if (!is.null(test)) computed(id, {
+  html_table(c("", "mean", paste(percent, "interval"), "df"),
+             list(c(name(value), estimate(id, test$estimate, test$conf.int[1], test$conf.int[2]),
+                    degrees(id %.% "df", test$parameter))))
+  logarithmic <- startsWith(value, "log10_")
+  if (logarithmic)
+    para("In the unit of the levels: ",
+         paste(estimate(id, 10^test$estimate, 10^test$conf.int[1], 10^test$conf.int[2], "level"), collapse = " "),
+         ", a geometric mean.")
+  note_normal(id, data[[value]], "the values")
+  shown <- paste0(id, if (logarithmic) ".level" else ".estimate")
+  sentence("The ", if (logarithmic) "geometric ", "mean of ",
+           name(if (logarithmic) sub("log10_", "", value) else value), " was ", again(shown),
+           ", ", percent, " CI ", again_interval(shown), ", <i>n</i> = ", again(id %.% "n"), ".")
+})
+
+# Hodges and Lehmann's estimate and its interval: the median of all means of two, or of all differences between two
+# samples, and the order statistic that the exact distribution of the rank sum asks for.
+hodges_lehmann <- function(all, quantile) {
+  all <- sort(all)
+  at <- max(quantile, 1)
+  list(estimate = median(all), lo = all[at], hi = all[length(all) + 1 - at])
+}
+
+# Signed ranks of differences. Rounded first, so that equal decimals are equal; zeros are dropped, ties share ranks.
+signed_ranks <- function(d) {
+  d <- round(d, 9)
+  n <- length(d)
+  walsh <- outer(d, d, "+") / 2
+  test <- coin::wilcoxsign_test(d ~ rep(0, n), distribution = "exact", zero.method = "Wilcoxon")
+  r <- rank(abs(d[d != 0]))
+  c(hodges_lehmann(walsh[upper.tri(walsh, diag = TRUE)], qsignrank(0.025, n)),
+    list(z = as.numeric(coin::statistic(test)), p = as.numeric(coin::pvalue(test)),
+         r = sum(r * sign(d[d != 0])) / sum(r)))
+}
+
+rank_row <- function(id, what, test)
+  c(what, estimate(id, test$estimate, test$lo, test$hi), num(id %.% "z", test$z),
+    p_value(id %.% "p", test$p), num(id %.% "r", test$r))
+
+rank_head <- c("Hodges and Lehmann&rsquo;s shift", "", paste(percent, "interval"), "<i>z</i>", "exact <i>p</i>",
+               "<i>r</i>")
+
+copy_ranks <- function(id, what)
+  sentence(what, " was ", again(id %.% "estimate"), ", ", percent, " CI ", again_interval(id %.% "estimate"),
+           ", <i>z</i> = ",
+           again(id %.% "z"), ", exact <i>p</i> ", again_p(id %.% "p"), ", rank-biserial <i>r</i> = ",
+             again(id %.% "r"), ".")
+
+show_wilcoxon <- function(id, test, pair, value, factor) if (!is.null(test)) computed(id, {
+  what <- paste(name(names(pair)[1]), "&minus;", name(names(pair)[2]))
+  html_table(rank_head, list(rank_row(id, what, test)))
+  copy_ranks(id, paste("The shift", what, "of", name(value)))
+  setNames(test$p, factor)
+})
+
+# Ranks of two samples; rounded first, as above.
+rank_sums <- function(x, y) {
+  x <- round(x, 9)
+  y <- round(y, 9)
+  samples <- data.frame(value = c(x, y), sample = factor(rep(1:2, c(length(x), length(y)))))
+  test <- coin::wilcox_test(value ~ sample, samples, distribution = "exact")
+  above <- mean(outer(x, y, ">")) - mean(outer(x, y, "<"))
+  c(hodges_lehmann(as.vector(outer(x, y, "-")), qwilcox(0.025, length(x), length(y))),
+    list(z = as.numeric(coin::statistic(test)), p = as.numeric(coin::pvalue(test)), r = above))
+}
+
+show_mann_whitney <- show_wilcoxon
+
+# `wide`: a column a level, a row a person.
+show_friedman <- function(id, test, wide, value, factor) if (!is.null(test)) computed(id, {
+  pairs <- combn(ncol(wide), 2)
+  tests <- lapply(seq_len(ncol(pairs)), function(i) signed_ranks(wide[, pairs[1, i]] - wide[, pairs[2, i]]))
+  holm <- p.adjust(vapply(tests, function(test) test$p, 0), "holm")
+  html_table(c(rank_head, "Holm"), lapply(seq_along(tests), function(i) {
+    pair <- id %.% "pair" %.% factor %.% i
+    c(rank_row(pair, paste(name(colnames(wide)[pairs[1, i]]), "&minus;", name(colnames(wide)[pairs[2, i]])),
+               tests[[i]]),
+      p_value(pair %.% "p_holm", holm[i]))
+  }))
+  html_table(c("Friedman", "&chi;&sup2;", "df", "<i>p</i>", "Kendall&rsquo;s <i>W</i>"),
+             list(c(name(factor), num(id %.% "chisq", test$statistic), degrees(id %.% "df", test$parameter),
+                    p_value(id %.% "p", test$p.value),
+                      num(id %.% "w", test$statistic / (nrow(wide) * (ncol(wide) - 1))))))
+  sentence("Friedman&rsquo;s test of ", name(value), " over ", name(factor), ": &chi;&sup2;(", again(id %.% "df"),
+           ") = ",
+           again(id %.% "chisq"), ", <i>p</i> ", again_p(id %.% "p"), ", <i>W</i> = ", again(id %.% "w"), ".")
+  setNames(test$p.value, factor)
+})
+
+# Differences between the levels of each factor, averaged over the others; intervals are for each difference alone.
+show_differences <- function(id, fit, data, factors, ...) {
+  rows <- unlist(lapply(factors, function(factor) {
+    levels <- levels(data[[factor]])
+    pairs <- combn(length(levels), 2)
+    means <- suppressMessages(emmeans::emmeans(fit, factor, ...))
+    these <- as.data.frame(summary(emmeans::contrast(means, "pairwise"), infer = TRUE, adjust = "none"))
+    holm <- p.adjust(these$p.value, "holm")
+    lapply(seq_len(nrow(these)), function(i) {
+      pair <- id %.% "pair" %.% factor %.% i
+      c(paste0(name(factor), ": ", name(levels[pairs[1, i]]), " &minus; ", name(levels[pairs[2, i]])),
+        estimate(pair, these$estimate[i], these$lower.CL[i], these$upper.CL[i]), num(pair %.% "t", these$t.ratio[i]),
+        degrees(pair %.% "df", these$df[i]), p_value(pair %.% "p", these$p.value[i]),
+          p_value(pair %.% "p_holm", holm[i]))
+    })
+  }), recursive = FALSE)
+  html_table(c("Differences of means", "", paste(percent, "interval"), "<i>t</i>", "df", "<i>p</i>", "Holm"), rows)
+}
+
+show_anova <- function(id, fit, data, value, factors) if (!is.null(fit)) computed(id, {
+  plain <- anova(fit, correction = "none")
+  corrected <- without("HF eps", anova(fit, correction = "GG"))
+  terms <- rownames(plain)
+  within <- names(attr(fit, "within"))
+  show_differences(id, fit, data, factors)
+  spheric <- vapply(strsplit(terms, ":"), function(of) any(of %in% within), NA) & plain$`num Df` > 1
+  html_table(c("Analysis of variance", "df", "<i>F</i>", "<i>p</i>", "&epsilon; (GG)", "<i>p</i> (GG)",
+               "&eta;&sup2;<sub>p</sub>", "interval", "&eta;&sup2;<sub>G</sub>"),
+    lapply(seq_along(terms), function(i) {
+      term <- id %.% terms[i]
+      eta <- effectsize::F_to_eta2(plain$F[i], plain$`num Df`[i], plain$`den Df`[i], ci = 0.95,
+                                   alternative = "two.sided")
+      c(name(terms[i]), paste0(degrees(term %.% "df1", plain$`num Df`[i]), ", ",
+                               degrees(term %.% "df2", plain$`den Df`[i])),
+        num(term %.% "F", plain$F[i]), p_value(term %.% "p", plain$`Pr(>F)`[i]),
+        if (spheric[i]) c(num(term %.% "gg_epsilon", corrected$`num Df`[i] / plain$`num Df`[i]),
+                          p_value(term %.% "gg_p", corrected$`Pr(>F)`[i])) else c("", ""),
+        num(term %.% "pes", eta$Eta2_partial, decimals = 3), interval(term %.% "pes", eta$CI_low, eta$CI_high, 3),
+        num(term %.% "ges", plain$ges[i], decimals = 3))
+    }))
+  note_normal(id, residuals(fit$lm), "the residuals")
+  note_spheric(id, fit)
+  sentence("Analysis of variance of ", name(value), ": ", paste0(vapply(seq_along(terms), function(i) {
+    term <- id %.% terms[i]
+    paste0(name(gsub(":", " \u00d7 ", terms[i])), ", <i>F</i>(", again(term %.% "df1"), ", ", again(term %.% "df2"),
+           ") = ",
+           again(term %.% "F"), ", <i>p</i> ", again_p(term %.% "p"),
+           if (spheric[i]) paste0(" (Greenhouse-Geisser: &epsilon; = ", again(term %.% "gg_epsilon"), ", <i>p</i> ",
+                                  again_p(term %.% "gg_p"), ")"),
+           ", &eta;&sup2;<sub>p</sub> = ", again(term %.% "pes"), " ", again_interval(term %.% "pes"))
+  }, ""), collapse = "; "), ".")
+  p <- ifelse(spheric, corrected$`Pr(>F)`, plain$`Pr(>F)`)
+  setNames(p, terms)[terms %in% factors]
+})
+
+show_lmm <- function(id, fit, data, value, factors) if (!is.null(fit)) computed(id, {
+  if (length(factors) > 0) show_differences(id, fit, data, factors, lmer.df = "satterthwaite")
+  table <- anova(fit)
+  html_table(c("Mixed model", "df", "<i>F</i>", "<i>p</i>"), lapply(seq_len(nrow(table)), function(i) {
+    term <- id %.% rownames(table)[i]
+    c(name(rownames(table)[i]), paste0(degrees(term %.% "df1", table$NumDF[i]), ", ",
+                                       degrees(term %.% "df2", table$DenDF[i])),
+      num(term %.% "F", table$`F value`[i]), p_value(term %.% "p", table$`Pr(>F)`[i]))
+  }))
+  spread <- as.data.frame(lme4::VarCorr(fit))$sdcor
+  para("Standard deviation between participants: ", num(id %.% "sd_participants", spread[1]), "; of the residuals: ",
+       num(id %.% "sd_residual", spread[2]),
+         if (lme4::isSingular(fit)) "; the fit is singular: no difference between participants is left to be told",
+           ".", class = "note")
+  note_normal(id, residuals(fit), "the residuals")
+  sentence("Mixed model of ", name(value), " with an intercept for each participant: ",
+           paste0(vapply(rownames(table), function(term) {
+    of <- id %.% term
+    paste0(name(gsub(":", " \u00d7 ", term)), ", <i>F</i>(", again(of %.% "df1"), ", ", again(of %.% "df2"), ") = ",
+           again(of %.% "F"), ", <i>p</i> ", again_p(of %.% "p"))
+  }, ""), collapse = "; "), ".")
+  setNames(table$`Pr(>F)`, rownames(table))[rownames(table) %in% factors]
+})
+
+ratio_interval <- function(id, bounds) paste0("[", num(id %.% "lo", bounds[1]), ", ", num(id %.% "hi", bounds[2]),
+  "]")
+
+# Times with time-outs are censored: a model that knows it beside the planned one. Proportional hazards (Cox), stratified
+# by person where the factor varies within persons; each person is a cluster where it does not.
+show_censored <- function(id, trials, planned, within = character(), between = character()) computed(id %.% "cox", {
+  if (!is.numeric(planned)) return(invisible())
+  trials <- trials[!is.na(trials$time_s), ]
+  if (all(trials$finished == 1) || all(trials$finished == 0)) {
+    para("No time was cut off by a time-out, or all were: a model of censored times says nothing more.",
+         class = "note")
+    return(invisible())
+  }
+  trials[c(within, between)] <- lapply(trials[c(within, between)], droplevels)
+  rows <- list()
+  for (group in list(within, between)) {
+    if (length(group) == 0) next
+    outcome <- "survival::Surv(time_s, finished) ~ "
+    model <- paste0(outcome, paste0("`", group, "`", collapse = " + "),
+                    if (identical(group, within)) " + strata(participant_id)")
+    fit <- function(model) without("infinite|converge",
+                                   if (identical(group, within)) survival::coxph(as.formula(model), trials,
+                                     ties = "efron") else
+      survival::coxph(as.formula(model), trials, cluster = participant_id))
+    full <- fit(model)
+    for (factor in group) {
+      its <- which(startsWith(names(coef(full)), factor) | startsWith(names(coef(full)), paste0("`", factor)))
+      wald <- as.numeric(t(coef(full)[its]) %*% solve(vcov(full)[its, its, drop = FALSE], coef(full)[its]))
+      p <- pchisq(wald, length(its), lower.tail = FALSE)
+      bounds <- suppressWarnings(confint(full))
+      for (k in seq_along(its)) {
+        row <- id %.% "cox" %.% factor %.% k
+        rows <- c(rows, list(c(paste0(name(factor), ": ", name(levels(trials[[factor]])[k + 1]), " against ",
+                                      name(levels(trials[[factor]])[1])),
+          num(row %.% "hr", exp(coef(full)[its[k]])), ratio_interval(row %.% "hr", exp(bounds[its[k], ])),
+          if (k == 1) c(num(id %.% "cox" %.% factor %.% "chisq", wald),
+                        p_value(id %.% "cox" %.% factor %.% "p", p)) else c("", ""))))
+      }
+      if (isTRUE((p < 0.05) != (planned[[factor]] < 0.05))) report$warnings[[id %.% "cox" %.% factor]] <- factor
+    }
+  }
+  para("Of ", count(id %.% "cox.trials", nrow(trials)), " trials ",
+       count(id %.% "cox.timeouts", sum(trials$finished == 0)),
+       " ended without success. The model that knows this, main effects only:")
+  html_table(c("Hazard of success (Cox)", "ratio", paste(percent, "interval"), "&chi;&sup2;", "<i>p</i>"), rows)
+  for (factor in c(within, between)) if (!is.null(report$warnings[[id %.% "cox" %.% factor]]))
+    para("The planned test and the model of censored times disagree about ", name(factor), " at the level of ",
+         name("5 %"),
+         ": means of times say less than what was seen. Report both.", class = "warning")
+})
+
+# What practice and the trial before did: the outcome over the place in the block, and by the condition made before,
+# between trials of one person and condition.
+show_position <- function(id, trials, measure) computed(id %.% "position", {
+  trials <- trials[!is.na(trials[[measure]]) & !is.na(trials$order_position), ]
+  several <- function(column) if (length(unique(trials[[column]])) > 1) paste(" +", column) else ""
+  fit <- lm(as.formula(paste0(measure, " ~ order_position", several("participant_id"), several("condition"))), trials)
+  if (df.residual(fit) < 1 || is.na(coef(fit)["order_position"]) || deviance(fit) < 1e-20) return(invisible())
+  slope <- summary(fit)$coefficients["order_position", ]
+  bounds <- confint(fit, "order_position")
+  para("Over the block ", name(measure), " changed by ",
+       paste(estimate(id %.% "position", slope[1], bounds[1], bounds[2], "slope"), collapse = " "),
+       " a trial, <i>p</i> ", shown_p(id %.% "position.p", slope[4]), " (persons and conditions held).",
+         class = "note")
+  after <- trials[!is.na(trials$previous_condition), ]
+  without_it <- lm(formula(fit), after)
+  with_it <- lm(update(formula(fit), . ~ . + previous_condition), after)
+  test <- if (df.residual(with_it) > 0 && deviance(with_it) > 1e-20) anova(without_it, with_it)
+  if (is.null(test) || is.na(test$F[2])) return(invisible())
+  para("The condition before a trial: <i>F</i>(", degrees(id %.% "carry_over.df1", test$Df[2]), ", ",
+       degrees(id %.% "carry_over.df2", test$Res.Df[2]),
+       ") = ", num(id %.% "carry_over.F", test$F[2]), ", <i>p</i> ",
+         shown_p(id %.% "carry_over.p", test$`Pr(>F)`[2]), ".", class = "note")
+})
