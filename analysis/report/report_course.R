@@ -72,6 +72,7 @@ show_deviations <- function(participants, sessions, attempts, studied, protocols
 
 # How conditions fell on the places of a block: counts, and what came before.
 show_balance <- function(trials) {
+  if (nrow(trials) == 0) return(para("No trial counts by itself; a staircase chooses its own.", class = "note"))
   for (block in unique(trials$block)) {
     rows <- trials[trials$block == block, ]
     conditions <- sort(unique(rows$condition))

@@ -367,56 +367,61 @@ show_lmm <- function(id, fit, data, value, factors) if (!is.null(fit)) computed(
   setNames(table$`Pr(>F)`, rownames(table))[rownames(table) %in% factors]
 })
 
-ratio_interval <- function(id, bounds) paste0("[", num(id %.% "lo", bounds[1]), ", ", num(id %.% "hi", bounds[2]),
-  "]")
-
-# Times with time-outs are censored: a model that knows it beside the planned one. Proportional hazards (Cox), stratified
-# by person where the factor varies within persons; each person is a cluster where it does not.
+# Times with time-outs are censored: a model that knows it beside the planned one. Proportional hazards (Cox), main
+# effects. Within persons in strata of persons, tested by the ratio of likelihoods, which holds where all successes are on
+# one side; between persons each person is a cluster, tested by Wald's statistic.
 show_censored <- function(id, trials, planned, within = character(), between = character()) computed(id %.% "cox", {
   if (!is.numeric(planned)) return(invisible())
   trials <- trials[!is.na(trials$time_s), ]
   if (all(trials$finished == 1) || all(trials$finished == 0)) {
-    para("No time was cut off by a time-out, or all were: a model of censored times says nothing more.",
-         class = "note")
+    para("No time was cut off by a time-out, or all were: a model of censored times says nothing more.", class = "note")
     return(invisible())
   }
   trials[c(within, between)] <- lapply(trials[c(within, between)], droplevels)
+  inside <- function(factors) {
+    terms <- paste(c(factors, "strata(participant_id)"), collapse = " + ")
+    without("infinite|converge", coxph(as.formula(paste("Surv(time_s, finished) ~", terms)), trials))
+  }
+  outside <- function(factors) {
+    terms <- paste(factors, collapse = " + ")
+    without("infinite|converge", coxph(as.formula(paste("Surv(time_s, finished) ~", terms)), trials, cluster = participant_id))
+  }
   rows <- list()
-  for (group in list(within, between)) {
-    if (length(group) == 0) next
-    outcome <- "survival::Surv(time_s, finished) ~ "
-    model <- paste0(outcome, paste0("`", group, "`", collapse = " + "),
-                    if (identical(group, within)) " + strata(participant_id)")
-    fit <- function(model) without("infinite|converge",
-                                   if (identical(group, within)) survival::coxph(as.formula(model), trials,
-                                     ties = "efron") else
-      survival::coxph(as.formula(model), trials, cluster = participant_id))
-    full <- fit(model)
+  infinite <- FALSE
+  for (group in Filter(length, list(within, between))) {
+    fit <- if (identical(group, within)) inside(group) else outside(group)
     for (factor in group) {
-      its <- which(startsWith(names(coef(full)), factor) | startsWith(names(coef(full)), paste0("`", factor)))
-      wald <- as.numeric(t(coef(full)[its]) %*% solve(vcov(full)[its, its, drop = FALSE], coef(full)[its]))
-      p <- pchisq(wald, length(its), lower.tail = FALSE)
-      bounds <- suppressWarnings(confint(full))
-      for (k in seq_along(its)) {
+      levels <- levels(trials[[factor]])
+      b <- coef(fit)[paste0(factor, levels[-1])]
+      v <- vcov(fit)[names(b), names(b), drop = FALSE]
+      finite <- abs(b) < 10 & sqrt(diag(v)) < 10
+      chisq <- if (identical(group, within)) 2 * (fit$loglik[2] - likelihood(inside(setdiff(group, factor)))) else
+        if (all(finite)) as.numeric(b %*% solve(v, b)) else NA
+      p <- pchisq(chisq, length(b), lower.tail = FALSE)
+      infinite <- infinite || any(!finite)
+      for (k in seq_along(b)) {
         row <- id %.% "cox" %.% factor %.% k
-        rows <- c(rows, list(c(paste0(name(factor), ": ", name(levels(trials[[factor]])[k + 1]), " against ",
-                                      name(levels(trials[[factor]])[1])),
-          num(row %.% "hr", exp(coef(full)[its[k]])), ratio_interval(row %.% "hr", exp(bounds[its[k], ])),
-          if (k == 1) c(num(id %.% "cox" %.% factor %.% "chisq", wald),
-                        p_value(id %.% "cox" %.% factor %.% "p", p)) else c("", ""))))
+        bounds <- if (finite[k]) exp(b[k] + c(-1, 1) * qnorm(0.975) * sqrt(v[k, k])) else c(NA, NA)
+        rows <- c(rows, list(c(paste0(name(factor), ": ", name(levels[k + 1]), " against ", name(levels[1])),
+                               num(row %.% "hr", if (finite[k]) exp(b[k]) else NA),
+                               paste0("[", num(row %.% "hr.lo", bounds[1]), ", ", num(row %.% "hr.hi", bounds[2]), "]"),
+                               if (k == 1) c(num(id %.% "cox" %.% factor %.% "chisq", chisq),
+                                             p_value(id %.% "cox" %.% factor %.% "p", p)) else c("", ""))))
       }
       if (isTRUE((p < 0.05) != (planned[[factor]] < 0.05))) report$warnings[[id %.% "cox" %.% factor]] <- factor
     }
   }
-  para("Of ", count(id %.% "cox.trials", nrow(trials)), " trials ",
-       count(id %.% "cox.timeouts", sum(trials$finished == 0)),
+  para("Of ", count(id %.% "cox.trials", nrow(trials)), " trials ", count(id %.% "cox.timeouts", sum(trials$finished == 0)),
        " ended without success. The model that knows this, main effects only:")
   html_table(c("Hazard of success (Cox)", "ratio", paste(percent, "interval"), "&chi;&sup2;", "<i>p</i>"), rows)
+  if (infinite) para("A ratio without a number has no end: all successes are on one side of it.", class = "note")
   for (factor in c(within, between)) if (!is.null(report$warnings[[id %.% "cox" %.% factor]]))
     para("The planned test and the model of censored times disagree about ", name(factor), " at the level of ",
-         name("5 %"),
-         ": means of times say less than what was seen. Report both.", class = "warning")
+         name("5 %"), ". Means of times say less where trials were cut off: report both.", class = "warning")
 })
+
+# Of a model's maximum; of one without terms, all of the likelihood that there is.
+likelihood <- function(fit) fit$loglik[length(fit$loglik)]
 
 # What practice and the trial before did: the outcome over the place in the block, and by the condition made before,
 # between trials of one person and condition.

@@ -11,7 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The shipped studies with contacts that are quick to compute, and time-outs that some trials do not meet.
+/// The shipped studies that plan an analysis, with contacts that are quick to compute and time-outs that some trials do
+/// not meet.
 class PlannedAnalyses : public testing::TestWithParam<const char*> {
 protected:
     void SetUp() override {
@@ -78,17 +79,28 @@ TEST_P(PlannedAnalyses, KeepEveryCountedPersonInR) {
     expectReportOf("s.db");
 }
 
+std::string nameOf(const testing::TestParamInfo<const char*>& test) {
+    std::string name = test.param;
+    for (char& c : name)
+        if (!isalnum(static_cast<unsigned char>(c))) c = '_';
+    return name;
+}
+
 INSTANTIATE_TEST_SUITE_P(Shipped, PlannedAnalyses,
                          testing::Values("peg_in_hole/study.toml", "peg_in_hole/hidden_offset.toml",
                                          "accuracy_threshold/study.toml", "designs/study.toml",
                                          "rendering_methods/study.toml", "real_vs_virtual/study.toml",
-                                         "narrow_passage/study.toml"),
-                         [](const auto& test) {
-                             std::string name = test.param;
-                             for (char& c : name)
-                                 if (!isalnum(static_cast<unsigned char>(c))) c = '_';
-                             return name;
-                         });
+                                         "narrow_passage/study.toml", "shared_control/study.toml",
+                                         "many_parts/study.toml"),
+                         nameOf);
+
+/// Those that take minutes each.
+std::vector<const char*> longStudies() {
+    if (std::getenv("PASSUNG_LONG") == nullptr) return {};
+    return {"gearbox_assembly/study.toml", "thesis_queries/study.toml"};
+}
+
+INSTANTIATE_TEST_SUITE_P(ShippedLong, PlannedAnalyses, testing::ValuesIn(longStudies()), nameOf);
 
 TEST(PlannedTest, RunsInRAsTheTableWritesIt) {
     // Truth: independent program (R 4, base): every test of the key table, each on factors that it is for.

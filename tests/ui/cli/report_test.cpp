@@ -137,9 +137,11 @@ TEST_P(RandomProtocols, AreTestedInTheReportAsInBaseR) {
         folder.path(), {"run", "study.toml", "--simulated", std::to_string(study.participants), "--db", "s.db"});
     ASSERT_EQ(run.exit_code, 0) << run.err << study.protocol;
     if (!study.excluded.empty()) {
-        ASSERT_EQ(
-            runProgram(folder.path(), {"participant", "exclude", "s.db", study.excluded, "--reason", "late"}).exit_code,
-            0);
+        const std::vector<std::string> words =
+            GetParam() % 2 == 0
+                ? std::vector<std::string>{"participant", "exclude", "s.db", study.excluded, "--reason", "late"}
+                : std::vector<std::string>{"participant", "withdraw", "s.db", study.excluded, "--scope", "exclude"};
+        ASSERT_EQ(runProgram(folder.path(), words).exit_code, 0);
     }
     const Ended report = runProgram(folder.path(), {"report", "s.db", "--out", "out", "--no-samples"});
     ASSERT_EQ(report.exit_code, 0) << report.err << study.protocol;
