@@ -177,7 +177,8 @@ show_programs <- function() {
 # ---- results.json ----------------------------------------------------------------------------------------------------
 
 write_results <- function(studied) {
-  for (id in names(report$not_computed)) base::message("not computed: ", id, ": ", report$not_computed[[id]])
+  for (id in names(report$not_computed)) cat("not computed: ", id, ": ", report$not_computed[[id]], "\n", sep = "",
+    file = stderr())
   text <- jsonlite::toJSON(list(kind = studied, results = report$results, cells = report$cells,
                                 left_out = report$left_out,
                                 not_computed = report$not_computed, disagreements = report$warnings),

@@ -169,18 +169,21 @@ show_t <- function(id, test, what, effect = NULL, symbol = "g") {
                       p_value(id %.% "p", test$p.value), effects)))
 }
 
-copy_t <- function(id, what)
+# Hedges' g of t.test()'s samples; nothing where t is no number, as of values that are all alike.
+effect_of <- function(test, ...) if (is.finite(test$statistic)) effectsize::hedges_g(...)
+
+copy_t <- function(id, what) {
+  effect <- if (!is.null(report$results[[id %.% "g"]]))
+    paste0(", Hedges&rsquo; <i>g</i> = ", again(id %.% "g"), " ", again_interval(id %.% "g"))
   sentence(what, " was ", again(id %.% "estimate"), ", ", percent, " CI ", again_interval(id %.% "estimate"),
-           ", <i>t</i>(",
-           again(id %.% "df"), ") = ", again(id %.% "t"), ", <i>p</i> ", again_p(id %.% "p"),
-             ", Hedges&rsquo; <i>g</i> = ",
-           again(id %.% "g"), " ", again_interval(id %.% "g"), ".")
+           ", <i>t</i>(", again(id %.% "df"), ") = ", again(id %.% "t"), ", <i>p</i> ", again_p(id %.% "p"), effect, ".")
+}
 
 # `pair`: the values at the two levels of a factor, persons in one order; `test`: what t.test() made of them.
 show_paired_t <- function(id, test, pair, value, factor) if (!is.null(test)) computed(id, {
   what <- paste(name(names(pair)[1]), "&minus;", name(names(pair)[2]))
   d <- pair[[1]] - pair[[2]]
-  show_t(id, test, what, effectsize::hedges_g(d))
+  show_t(id, test, what, effect_of(test, d))
   para("Cohen&rsquo;s <i>d<sub>z</sub></i> = ", num(id %.% "dz", mean(d) / sd(d)),
        ". With so many participants the test finds a <i>d<sub>z</sub></i> of ",
        num(id %.% "sensitivity", power.t.test(length(d), sd = 1, power = 0.8, type = "paired")$delta),
@@ -192,7 +195,7 @@ show_paired_t <- function(id, test, pair, value, factor) if (!is.null(test)) com
 
 show_welch_t <- function(id, test, pair, value, factor) if (!is.null(test)) computed(id, {
   what <- paste(name(names(pair)[1]), "&minus;", name(names(pair)[2]))
-  show_t(id, test, what, effectsize::hedges_g(pair[[1]], pair[[2]], pooled_sd = FALSE))
+  show_t(id, test, what, effect_of(test, pair[[1]], pair[[2]], pooled_sd = FALSE))
   note_normal(id, unlist(lapply(pair, function(x) x - mean(x))), "the residuals")
   copy_t(id, paste("The difference of means", what, "of", name(value)))
   setNames(test$p.value, factor)

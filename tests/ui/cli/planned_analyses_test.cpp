@@ -94,14 +94,6 @@ INSTANTIATE_TEST_SUITE_P(Shipped, PlannedAnalyses,
                                          "many_parts/study.toml"),
                          nameOf);
 
-/// Those that take minutes each.
-std::vector<const char*> longStudies() {
-    if (std::getenv("PASSUNG_LONG") == nullptr) return {};
-    return {"gearbox_assembly/study.toml", "thesis_queries/study.toml"};
-}
-
-INSTANTIATE_TEST_SUITE_P(ShippedLong, PlannedAnalyses, testing::ValuesIn(longStudies()), nameOf);
-
 TEST(PlannedTest, RunsInRAsTheTableWritesIt) {
     // Truth: independent program (R 4, base): every test of the key table, each on factors that it is for.
     if (!hasR()) GTEST_SKIP() << "R (r-base-core) is not installed";

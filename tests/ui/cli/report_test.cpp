@@ -301,6 +301,23 @@ TEST_F(Report, KeepsATextThatSomebodyEdited) {
     EXPECT_EQ(readText(copy / "results.json"), readText(out() / "results.json"));
 }
 
+TEST(ReportOfNothing, SaysWhatRCouldNotComputeAndGoesOn) {
+    // Truth: closed form (all trials end at their time-out: cells are alike, and differences of them are 0).
+    if (!hasReportPackages()) GTEST_SKIP() << kNoReportPackages;
+    const TempFolder folder;
+    std::string text = smallStudy();
+    text.replace(text.find("\"task.timeout_s\" = 20"), 21, "\"task.timeout_s\" = 0.4");
+    text.replace(text.find("repetitions = 3"), 15, "repetitions = 1");
+    text += "[[analysis]]\noutcome = \"time_s\"\nfactors = [\"chance\"]\ntest = \"wilcoxon\"\n";
+    writeText(folder / "study.toml", text);
+    ASSERT_EQ(runProgram(folder.path(), {"run", "study.toml", "--simulated", "4", "--db", "s.db"}).exit_code, 0);
+    const Ended report = runProgram(folder.path(), {"report", "s.db", "--out", "out", "--no-samples"});
+    EXPECT_EQ(report.exit_code, 0) << report.err;
+    EXPECT_NE(report.err.find("not computed: a1: all pairwise differences equal zero"), std::string::npos)
+        << report.err;
+    EXPECT_NE(readText(folder / "out/results.json").find("\"a1.n\": 4,"), std::string::npos);
+}
+
 TEST(ReportWithoutR, IsCompleteButForThePageAndNamesTheLineThatInstallsIt) {
     // Truth: invariant (a search path without programs has no R).
     const TempFolder folder;
