@@ -60,7 +60,8 @@ TEST(FirstStudy, TheSmallestStudyOfTheFrontPageRunsByTheCommandsBelowIt) {
         ++commands;
     }
     EXPECT_EQ(commands, 3);
-    EXPECT_TRUE(fs::is_regular_file(folder / "tables/codebook.csv"));
+    for (const char* file : {"report/codebook.csv", "report/analysis.Rmd"})
+        EXPECT_TRUE(fs::is_regular_file(folder / file)) << file;
 }
 
 }  // namespace
