@@ -14,6 +14,8 @@ struct Friction {
     double sliding = 0.0;  // μ_d ≥ 0
 };
 
+inline constexpr double kSameWay = 0.985;  // cosine of 10 degrees: contacts that face so much alike rub as one
+
 /// Contacts with one obstacle that face one way and rub as one.
 struct FrictionPatch {
     Vec3 normal = Vec3::Zero();   // unit, out of the obstacle

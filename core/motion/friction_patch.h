@@ -6,8 +6,6 @@ namespace passung::motion {
 
 // Geometry of a patch of contacts that rub as one. rt-safe.
 
-inline constexpr double kSameWay = 0.985;  // cosine of 10 degrees: contacts that face so much alike rub as one
-
 /// The friction of `patch` in the tangents of a normal that differs a little.
 Vec3 turned(const FrictionPatch& patch, const Vec3& normal) noexcept;
 

@@ -12,7 +12,6 @@ namespace {
 
 using Point = Eigen::Vector2d;
 
-constexpr double kAlike = 0.985;          // cosine: a face lies along the plane
 constexpr std::size_t kMostCorners = 64;  // of a face; of more some are left out
 
 /// A convex polygon.
@@ -85,7 +84,8 @@ SeenFace seenFace(const ClusterTree& tree, const Cluster& face, const Placement&
 }  // namespace
 
 bool lieAlong(const HullPair& pair, const Placement& X, const Vec3& n) noexcept {
-    return std::abs(pair.of_obstacle.normal.dot(n)) > kAlike && std::abs((X.R * pair.of_held.normal).dot(n)) > kAlike;
+    return std::abs(pair.of_obstacle.normal.dot(n)) > motion::kSameWay &&
+           std::abs((X.R * pair.of_held.normal).dot(n)) > motion::kSameWay;
 }
 
 std::size_t findPieces(const HullPair& pair, const Placement& X, const Vec3& n, double within, int fineness,

@@ -36,6 +36,13 @@ private:
     tick::TickState state_;
 };
 
+/// No limits of the device that act.
+inline void liftLimits(scene::SceneSpec& spec) {
+    spec.limits.max_force = 1e4;
+    spec.limits.max_torque = 1e4;
+    spec.limits.max_force_rate = 1e12;
+}
+
 /// A held part over one fixed part, no limits that act and no start gate.
 inline scene::SceneSpec scene(const shape::Shape& held, const Pose& X_WHeld, const shape::Shape& fixed,
                               const Pose& X_WFixed, scene::ContactMethod method) {
@@ -46,9 +53,7 @@ inline scene::SceneSpec scene(const shape::Shape& held, const Pose& X_WHeld, con
     spec.contact.geometry = scene::Geometry::Field;
     spec.contact.cell = 0.5e-3;
     spec.contact.spacing = 1e-3;
-    spec.limits.max_force = 1e4;
-    spec.limits.max_torque = 1e4;
-    spec.limits.max_force_rate = 1e12;
+    liftLimits(spec);
     return spec;
 }
 

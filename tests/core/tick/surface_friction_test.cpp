@@ -35,9 +35,7 @@ public:
         spec_.contact.geometry = scene::Geometry::Surface;
         spec_.contact.stiffness = kStiffness;
         spec_.contact.rotational_stiffness = kRotationalStiffness;
-        spec_.limits.max_force = 1e4;
-        spec_.limits.max_torque = 1e4;
-        spec_.limits.max_force_rate = 1e12;
+        test::liftLimits(spec_);
     }
     Rubbing& against(const TriangleMesh& mesh, const Pose& X = {}, double at_rest = kAtRest,
                      double sliding = kSliding) {

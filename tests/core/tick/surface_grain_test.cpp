@@ -39,9 +39,7 @@ Judged judgedOf(const test::SurfaceCase& made, const std::string& prefix, bool g
         spec.contact.geometry = scene::Geometry::Surface;
         spec.contact.stiffness = kStiffness;
         spec.contact.rotational_stiffness = kRotationalStiffness;
-        spec.limits.max_force = 1e4;
-        spec.limits.max_torque = 1e4;
-        spec.limits.max_force_rate = 1e12;
+        test::liftLimits(spec);
         return spec;
     };
     judged.overlap = [truth](const Pose& X) { return truth->distance(X, 1e-9) > 0.0 ? 0.0 : 1.0; };
@@ -52,10 +50,8 @@ Judged judgedOf(const test::SurfaceCase& made, const std::string& prefix, bool g
 void print(const std::string& what, const Seen& seen) {
     std::printf(
         "%s: %ld ticks, %ld judged (reference: %ld snaps, %ld without an end; looks ended in %ld); force beside it "
-        "%.4f "
-        "N at most; %ld that differ with more energy, %ld with less; step beyond it %.4f N, %ld above 0.1 N; %d "
-        "catches, "
-        "longest %d ticks; worst %s\n",
+        "%.4f N at most; %ld that differ with more energy, %ld with less; step beyond it %.4f N, %ld above 0.1 N; %d "
+        "catches, longest %d ticks; worst %s\n",
         what.c_str(), seen.ticks, seen.judged, seen.snaps, seen.unknown, seen.lagging, seen.elsewhere, seen.off,
         seen.lower, seen.step, seen.steps, seen.catches, seen.longest, seen.worst.c_str());
     std::fflush(stdout);
