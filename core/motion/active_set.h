@@ -10,6 +10,8 @@ namespace passung::motion {
 /// A motion of a rigid body in one vector with the unit metre: (Δx, ρ Δφ).
 using Motion = Eigen::Matrix<double, 6, 1>;
 
+using MotionMatrix = Eigen::Matrix<double, 6, 6>;
+
 /// Motions of several bodies in one vector, six numbers a body; N = 6: of one.
 template <int N>
 using MotionOf = Eigen::Matrix<double, N, 1>;

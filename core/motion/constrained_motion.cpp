@@ -39,7 +39,7 @@ void MotionSolver::addRow(const contact::ContactPoint& contact) noexcept {
     const double gradient = contact.gradient.norm();
     if (!(gradient > kLeastGradient)) return;
     MotionRow& row = rows_[static_cast<std::size_t>(count_++)];
-    row.a = around_.metric.rowOf(contact.position, contact.gradient);
+    row.a = around_.rowOf(contact.position, contact.gradient);
     row.length = row.a.norm();
     row.a /= row.length;
     row.b = wantedOf(contact) / row.length;
@@ -64,13 +64,12 @@ const MotionRow* MotionSolver::mostViolated(const Motion& u) const noexcept {
 
 /// True if `u` violates contacts that were not met so far; they now are.
 bool MotionSolver::meetsMore(const Motion& u) noexcept {
-    const Vec3 dphi = around_.metric.turnOf(u);
-    const Vec3 at_origin = u.head<3>() - dphi.cross(around_.metric.centre);
+    const Surroundings::Carried carried = around_.carriedBy(u);
     std::array<double, kBins> worst;
     std::array<const contact::ContactPoint*, kBins> which{};
     worst.fill(tolerance_);
     for (const contact::ContactPoint& contact : around_.contacts) {
-        const double missing = least(contact) - contact.gradient.dot(at_origin + dphi.cross(contact.position));
+        const double missing = least(contact) - contact.gradient.dot(carried.of(contact.position));
         if (!(missing > tolerance_)) continue;
         const std::size_t bin =
             binOf(contact.gradient, (contact.position - around_.metric.centre).cross(contact.gradient));

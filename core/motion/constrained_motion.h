@@ -26,10 +26,30 @@ struct Surroundings {
     double keep_out;                             // the φ that a contact must keep, slightly negative [m]
     double sunk_out = keep_out;                  // and that one keeps which is deeper already, ≤ keep_out
     std::span<const TouchingPiece> pieces = {};  // where contacts are corners of what touches; else they have its areas
+    const MotionMatrix* unbent = nullptr;        // T; none: 1
 
+    /// What is solved for is u, the body moves by Tᵀ u. An energy ½ vᵀ B v - wᵀ v of motions v, B = L Lᵀ, is
+    /// ½|u - T w|² up to a constant with T = L⁻¹: as that of a spring, only that rows become T a.
+    Motion unbentRow(const Motion& a) const noexcept { return unbent == nullptr ? a : Motion(*unbent * a); }
+    Motion motionOf(const Motion& u) const noexcept { return unbent == nullptr ? u : Motion(unbent->transpose() * u); }
+    /// What a contact at `point` with a normal does to u.
+    Motion rowOf(const Vec3& point, const Vec3& normal) const noexcept {
+        return unbentRow(metric.rowOf(point, normal));
+    }
+    /// How far points are carried by `u`.
+    struct Carried {
+        Vec3 origin, turn;  // of the world's origin [m], and about it [rad]
+        Vec3 of(const Vec3& p_WP) const noexcept { return origin + turn.cross(p_WP); }
+    };
+    Carried carriedBy(const Motion& u) const noexcept {
+        const Motion v = motionOf(u);
+        const Vec3 turn = metric.turnOf(v);
+        return {v.head<3>() - turn.cross(metric.centre), turn};
+    }
     /// How far the point at `p_WP` is carried by `u` [m].
     Vec3 wayOf(const Vec3& p_WP, const Motion& u) const noexcept {
-        return u.head<3>() + metric.turnOf(u).cross(p_WP - metric.centre);
+        const Motion v = motionOf(u);
+        return v.head<3>() + metric.turnOf(v).cross(p_WP - metric.centre);
     }
 };
 

@@ -16,7 +16,12 @@ FrictionMotion constrainWithFriction(const Motion& wanted, const Surroundings& a
     const bool smooth =
         std::all_of(friction.begin(), friction.end(), [](const Friction& f) { return f.at_rest == 0.0; });
     if (smooth || result.motion.active == 0) return result;
-    return FrictionBalance(wanted, around, friction, result.motion, before).find();
+    return balanceFriction(wanted, around, friction, before, result.motion);
+}
+
+FrictionMotion balanceFriction(const Motion& wanted, const Surroundings& around, std::span<const Friction> friction,
+                               const FrictionPatches& before, const ConstrainedMotion& likely) noexcept {
+    return FrictionBalance(wanted, around, friction, likely, before).find();
 }
 
 }  // namespace passung::motion

@@ -38,6 +38,7 @@ Vec3 impulseAlong(const FrictionPatch& patch) noexcept;
 struct FrictionPatches {
     std::array<FrictionPatch, 6> patch;
     int count = 0;
+    Motion motion = Motion::Zero();  // what the body did
 };
 
 struct FrictionMotion {
@@ -59,7 +60,8 @@ inline constexpr int kMostSteps = 1000;  // rows that these take up in all
 ///   |x_p| ≤ μ Λ_p,  Λ_p = Σ λ_i over the patch;   x_p = -μ Λ_p s/|s|  where the slip s = B_p u is not zero.
 /// The bound on (x₁, x₂, x₃) is the ellipsoidal limit surface of a patch (Howe and Cutkosky 1996): full friction either
 /// along or as torsion, T ≤ μ r_e F, never both at once. μ is `at_rest` for a patch that did not slide before and
-/// `sliding` for one that does.
+/// `sliding` for one that does. A patch that is new slides if what slid before would have slid there: as contacts of a
+/// thread come and go along its flanks.
 ///
 /// r_e is the mean distance from the centre of pressure over the patch, under the pressure that varies linearly over it
 /// and has that centre: 2/3 R for a disc pressed evenly, half the distance for two equal feet. The patch is the
@@ -73,5 +75,9 @@ inline constexpr int kMostSteps = 1000;  // rows that these take up in all
 FrictionMotion constrainWithFriction(const Motion& wanted, const Surroundings& around,
                                      std::span<const Friction> friction, const FrictionPatches& before,
                                      std::span<const std::uint32_t> likely = {}) noexcept;
+
+/// The same, from a motion on that is likely: where it goes, and what holds it.
+FrictionMotion balanceFriction(const Motion& wanted, const Surroundings& around, std::span<const Friction> friction,
+                               const FrictionPatches& before, const ConstrainedMotion& likely) noexcept;
 
 }  // namespace passung::motion

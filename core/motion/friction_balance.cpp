@@ -32,6 +32,7 @@ FrictionBalance::FrictionBalance(const Motion& wanted, const Surroundings& aroun
     : wanted_(wanted),
       around_(around),
       friction_(friction),
+      before_(before),
       size_(wanted.norm()),
       tolerance_(std::max(kMotionTolerance, 2.0 * ActiveSet::kIndependent * size_)),
       fine_(1e-13 * size_),
@@ -54,14 +55,7 @@ FrictionBalance::FrictionBalance(const Motion& wanted, const Surroundings& aroun
         patch.is.radius = effectiveRadius(around, patch.is, u_);
         place(patch);
         patch.slip = patch.B * u_;
-        for (int k = 0; k < before.count; ++k) {
-            const FrictionPatch& old = before.patch[static_cast<std::size_t>(k)];
-            if (old.obstacle != patch.is.obstacle || !(old.normal.dot(patch.is.normal) > kSameWay)) continue;
-            patch.is.slides = old.slides;
-            patch.is.impulse = turned(old, patch.is.normal);
-            patch.given = old.slides ? old.slip : 0.0;
-            break;
-        }
+        goOn(patch);
         // On one plane friction takes so much of the slip.
         if (patch.is.slides && !(patch.given > 0.0))
             patch.given = std::max(0.0, patch.slip.norm() - coefficientOf(patch) * patch.pressure);
@@ -78,6 +72,22 @@ FrictionBalance::FrictionBalance(const Motion& wanted, const Surroundings& aroun
     u_ = active_.start(wanted_);
 }
 
+/// What `patch` has of the motion before.
+void FrictionBalance::goOn(Patch& patch) const noexcept {
+    bool slid = false;
+    for (int k = 0; k < before_.count; ++k) {
+        const FrictionPatch& old = before_.patch[static_cast<std::size_t>(k)];
+        if (old.obstacle != patch.is.obstacle) continue;
+        slid = slid || old.slides;
+        if (!(old.normal.dot(patch.is.normal) > kSameWay)) continue;
+        patch.is.slides = old.slides;
+        patch.is.impulse = turned(old, patch.is.normal);
+        patch.given = old.slides ? old.slip : 0.0;
+        return;
+    }
+    patch.is.slides = slid && slipOf(around_, patch.is, before_.motion).norm() > kAtRest * size_;
+}
+
 double FrictionBalance::coefficientOf(const Patch& patch) const noexcept {
     const Friction& rough = friction_[patch.is.obstacle];
     return patch.is.slides ? rough.sliding : rough.at_rest;
@@ -88,9 +98,11 @@ void FrictionBalance::place(Patch& patch) const noexcept {
     const PlacedMetric& metric = around_.metric;
     const Vec3 torsion = metric.isRound() ? Vec3(patch.is.radius / metric.radius * patch.is.normal)
                                           : metric.perTurn(patch.is.radius * patch.is.normal);
-    patch.B << metric.rowOf(patch.is.centre, t1).transpose(),  //
-        metric.rowOf(patch.is.centre, t2).transpose(),         //
-        Vec3::Zero().transpose(), torsion.transpose();
+    Motion about;
+    about << Vec3::Zero(), torsion;
+    patch.B << around_.rowOf(patch.is.centre, t1).transpose(),  //
+        around_.rowOf(patch.is.centre, t2).transpose(),         //
+        around_.unbentRow(about).transpose();
 }
 
 int FrictionBalance::patchFor(const contact::ContactPoint& contact) noexcept {
@@ -112,6 +124,7 @@ int FrictionBalance::patchFor(const contact::ContactPoint& contact) noexcept {
     patch.is.obstacle = contact.obstacle;
     place(patch);
     patch.slip = patch.B * u_;
+    goOn(patch);
     return patch_count_++;
 }
 
@@ -127,7 +140,7 @@ void FrictionBalance::buildRow(int cut) noexcept {
     MotionRow& row = rows_[static_cast<std::size_t>(cut)];
     row.gradient = contact.gradient.norm();
     const double rough = coefficientOf(patch) * row.gradient;
-    row.a = around_.metric.rowOf(contact.position, contact.gradient);
+    row.a = around_.rowOf(contact.position, contact.gradient);
     row.a -= rough * patch.B.transpose() * is.direction;
     row.length = row.a.norm();
     row.a /= row.length;
@@ -184,15 +197,14 @@ bool FrictionBalance::cutAmong(bool all, double enough) noexcept {
     double lift = 0.0;
     for (const Patch& patch : std::span(patches_).first(static_cast<std::size_t>(patch_count_)))
         lift = std::max(lift, coefficientOf(patch) * (patch.slip.norm() - patch.given));
-    const Vec3 dphi = around_.metric.turnOf(u_);
-    const Vec3 at_origin = u_.head<3>() - dphi.cross(around_.metric.centre);
+    const Surroundings::Carried carried = around_.carriedBy(u_);
     std::array<double, kBins> worst;
     std::array<Cut, kBins> which;
     worst.fill(least_violation);
     const std::size_t count = all ? around_.contacts.size() : watched_count_;
     for (std::size_t i = 0; i < count; ++i) {
         const contact::ContactPoint& contact = around_.contacts[all ? i : watched_[i].contact];
-        const double missing = least(contact) - contact.gradient.dot(at_origin + dphi.cross(contact.position));
+        const double missing = least(contact) - contact.gradient.dot(carried.of(contact.position));
         if (!(missing + kLongestGradient * lift > least_violation)) continue;
         if (!(contact.gradient.squaredNorm() > kLeastGradient * kLeastGradient)) continue;
         const int at = all ? patchFor(contact) : watched_[i].patch;
@@ -352,6 +364,7 @@ void FrictionBalance::tell(FrictionMotion& result) const noexcept {
     result.motion.u = u_;
     result.motion.relaxed = relaxed_;
     result.motion.iterations = iterations_;
+    result.patches.motion = around_.motionOf(u_);
     for (int i = 0; i < active_.size(); ++i) {
         const MotionRow& row = active_.row(i);
         const ActiveContact held{cuts_[row.contact].contact, active_.lambda(i) * row.gradient / row.length};

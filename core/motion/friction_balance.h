@@ -58,6 +58,7 @@ private:
     int patchFor(const contact::ContactPoint& contact) noexcept;
     double least(const contact::ContactPoint& contact) const noexcept;
     void place(Patch& patch) const noexcept;
+    void goOn(Patch& patch) const noexcept;
     void addCut(std::uint32_t contact, int patch, const Vec3& direction) noexcept;
     void buildRow(int cut) noexcept;
     double violationOf(const contact::ContactPoint& contact, const Patch& patch) const noexcept;
@@ -77,6 +78,7 @@ private:
     const Motion& wanted_;
     const Surroundings& around_;
     const std::span<const Friction> friction_;
+    const FrictionPatches& before_;
     const double size_, tolerance_, fine_;
     bool relaxed_ = false, converged_ = true;
     std::array<Patch, kMostPatches> patches_;

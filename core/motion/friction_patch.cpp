@@ -17,6 +17,13 @@ Vec3 turned(const FrictionPatch& patch, const Vec3& normal) noexcept {
     return {along.dot(s1), along.dot(s2), patch.impulse.z()};
 }
 
+Vec3 slipOf(const Surroundings& around, const FrictionPatch& patch, const Motion& motion) noexcept {
+    const auto [t1, t2] = tangentsOf(patch.normal);
+    const Vec3 turn = around.metric.turnOf(motion);
+    const Vec3 way = motion.head<3>() + turn.cross(patch.centre - around.metric.centre);
+    return {way.dot(t1), way.dot(t2), patch.radius * turn.dot(patch.normal)};
+}
+
 Vec3 impulseAlong(const FrictionPatch& patch) noexcept {
     const auto [t1, t2] = tangentsOf(patch.normal);
     return patch.impulse.x() * t1 + patch.impulse.y() * t2;

@@ -19,7 +19,7 @@ namespace passung {
 namespace {
 
 /// The number to which the hashes below belong.
-constexpr int kHashedNumerics = 11;
+constexpr int kHashedNumerics = 12;
 
 /// The mathematics library's own bits, which differ between its versions and between processors. Where they do, these
 /// hashes say nothing.
@@ -36,19 +36,19 @@ const Golden kGolden[] = {
     {"penalty", "[contact]\nmethod = \"penalty\"\n", 0x7c4f3664d4630949u},
     {"penalty_area", "[contact]\nmethod = \"penalty\"\nvariant = \"area_weighted\"\ntwo_way = true\n",
      0xdcb07298d594bd3au},
-    {"heuristic", "[contact]\nmethod = \"god_object_heuristic\"\ngeometry = \"field\"\n", 0xaef445008fd05e51u},
-    {"god_object", "[contact]\nmethod = \"god_object\"\ngeometry = \"field\"\n", 0xbb81301f9d029ad8u},
+    {"heuristic", "[contact]\nmethod = \"god_object_heuristic\"\ngeometry = \"field\"\n", 0xc752683fbe4175a5u},
+    {"god_object", "[contact]\nmethod = \"god_object\"\ngeometry = \"field\"\n", 0x11abe7ab97d2c25cu},
     {"god_object_two_way",
      "[contact]\nmethod = \"god_object\"\ngeometry = \"field\"\ntwo_way = true\nbudget_nodes = 400\n",
-     0x5392d55f80aaeef5u},
+     0xb39bca3630f0659eu},
     {"layered", "[contact]\nmethod = \"god_object\"\ngeometry = \"field\"\nmode = \"layered\"\ncell_mm = 0.5\n",
-     0xa5c0dfe9798d0887u},
-    {"surface_friction", "[contact]\nmethod = \"god_object\"\n", 0xc281b5c61e242ac9u},
+     0x62992c973bc2a808u},
+    {"surface_friction", "[contact]\nmethod = \"god_object\"\n", 0x0450d0201eea9f0au},
     {"cubic", "[contact]\nmethod = \"penalty\"\nmode = \"cubic\"\nspacing_mm = 0.7\n", 0x7f04a43bc8ba6608u},
 };
 
 /// Of the scene with every effect.
-constexpr std::uint64_t kEveryEffect = 0xf95259786173db2bu;
+constexpr std::uint64_t kEveryEffect = 0x723d851ed88ca67cu;
 
 /// The same without friction, on closed forms.
 constexpr std::uint64_t kClosedForm = 0x9a6ccf5c5185c6cfu;
