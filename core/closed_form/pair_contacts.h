@@ -12,7 +12,7 @@
 
 namespace passung::closed_form {
 
-using MotionMatrix = Eigen::Matrix<double, 6, 6>;  // [1/m]
+using motion::MotionMatrix;  // here [1/m]
 
 /// Which line meets which lump.
 struct TouchName {

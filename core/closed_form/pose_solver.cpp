@@ -39,8 +39,13 @@ motion::Motion solved(const MotionMatrix& L, bool bent, const motion::Motion& v)
 
 }  // namespace
 
-PoseSolver::PoseSolver(std::span<const SolidPair> pairs, geometry::NearList near)
-    : near_(std::move(near)), rows_(pairs.empty() ? 0 : kMostRows), prepared_(rows_.size()) {
+PoseSolver::PoseSolver(std::span<const SolidPair> pairs, geometry::NearList near,
+                       std::span<const motion::Friction> friction)
+    : near_(std::move(near)),
+      rows_(pairs.empty() ? 0 : kMostRows),
+      prepared_(rows_.size()),
+      friction_(friction.begin(), friction.end()),
+      manifold_(friction.empty() ? 0 : kMostRows) {
     if (near_.hasAll()) {
         all_.resize(pairs.size());
         std::iota(all_.begin(), all_.end(), 0u);
@@ -183,8 +188,10 @@ bool PoseSolver::factor(const Pose& X, MotionMatrix& L, motion::Motion& wanted) 
     return true;
 }
 
-bool PoseSolver::solveRows(const motion::Motion& wanted, motion::ActiveSet& active, motion::Motion& y) noexcept {
-    active = {};
+/// Of the rows as they are prepared; pushes are per contact's normal.
+bool PoseSolver::solveRows(const motion::Motion& wanted, motion::ConstrainedMotion& found) noexcept {
+    motion::ActiveSet active;
+    motion::Motion& y = found.u;
     for (std::size_t i = 0; i < count_; ++i)
         if (rows_[i].from.push > 0.0) active.tryAdd(prepared_[i], 0.0);
     y = active.start(wanted);
@@ -198,8 +205,53 @@ bool PoseSolver::solveRows(const motion::Motion& wanted, motion::ActiveSet& acti
             most = violated;
             worst = &prepared_[i];
         }
-        if (worst == nullptr) return true;
+        if (worst == nullptr) break;
         if (active.takeUp(*worst, y, taken, kMostTaken) != motion::ActiveSet::Taken::Yes) return false;
+    }
+    found.active = active.size();
+    for (int i = 0; i < found.active; ++i) {
+        const motion::MotionRow& row = active.row(i);
+        found.active_contacts[static_cast<std::size_t>(i)] = {row.contact, active.lambda(i) / row.length};
+    }
+    return true;
+}
+
+/// What friction leaves of the motion that was found.
+void PoseSolver::rub(const Pose& X, const motion::Motion& wanted, const MotionMatrix* unbent,
+                     const motion::FrictionPatches& before, motion::ConstrainedMotion& found) noexcept {
+    manifold_.clear();
+    for (std::size_t i = 0; i < count_; ++i) {
+        const HeldContact& from = rows_[i].from;
+        manifold_.tryPush({.position = from.contact.point,
+                           .normal = from.contact.normal,
+                           .gradient = from.contact.normal,
+                           .phi = from.contact.gap - kHeldGap,
+                           .area = 1.0,
+                           .obstacle = from.pair});
+    }
+    const auto lengthOf = [&](const motion::ActiveContact& held) { return manifold_[held.contact].gradient.norm(); };
+    // Nearer to what will hold than what does without friction.
+    motion::ConstrainedMotion held_before;
+    held_before.relaxed = found.relaxed;
+    for (std::size_t i = 0; i < count_ && held_before.active < 6; ++i)
+        if (rows_[i].from.push > 0.0)
+            held_before.active_contacts[static_cast<std::size_t>(held_before.active++)] = {
+                static_cast<std::uint32_t>(i), rows_[i].from.push};
+    if (held_before.active > 0) found = held_before;
+    for (int i = 0; i < found.active; ++i) {
+        motion::ActiveContact& held = found.active_contacts[static_cast<std::size_t>(i)];
+        held.push *= lengthOf(held);
+    }
+    const double keep_out = -allowed_ - kHeldGap;
+    const motion::Surroundings around{
+        .contacts = manifold_, .metric = metric_.at(X), .keep_out = keep_out, .sunk_out = keep_out, .unbent = unbent};
+    const motion::FrictionMotion rubbed = motion::balanceFriction(wanted, around, friction_, before, found);
+    rubs_ += rubbed.motion.iterations;
+    found = rubbed.motion;
+    patches_ = rubbed.patches;
+    for (int i = 0; i < found.active; ++i) {
+        motion::ActiveContact& held = found.active_contacts[static_cast<std::size_t>(i)];
+        held.push /= lengthOf(held);
     }
 }
 
@@ -217,8 +269,9 @@ void PoseSolver::prepare(const MotionMatrix& L, bool bent) noexcept {
 
 /// Lets go of rows that were made stiff and that do not hold: beside one nothing could move away from it. True: of
 /// some.
-bool PoseSolver::releaseStiff(const motion::ActiveSet& active) noexcept {
-    for (int i = 0; i < active.size(); ++i) rows_[active.row(i).contact].stiff = false;
+bool PoseSolver::releaseStiff(const motion::ConstrainedMotion& found) noexcept {
+    for (int i = 0; i < found.active; ++i)
+        rows_[found.active_contacts[static_cast<std::size_t>(i)].contact].stiff = false;
     bool any = false;
     for (std::size_t i = 0; i < count_; ++i) {
         if (!rows_[i].stiff) continue;
@@ -232,26 +285,31 @@ bool PoseSolver::releaseStiff(const motion::ActiveSet& active) noexcept {
 /// The motion that the rows leave of `wanted`; what holds it is held from now on. `back`: B is 1.
 motion::Motion PoseSolver::step(const Pose& X, const motion::Motion& wanted, bool back, PoseMemory& memory) noexcept {
     MotionMatrix L = MotionMatrix::Identity();
-    motion::ActiveSet active;
-    motion::Motion y;
+    motion::ConstrainedMotion found;
+    if (!back) patches_ = {};
     for (int round = 0;; ++round) {
         motion::Motion way = wanted;
         const bool bent = !back && factor(X, L, way);
         prepare(L, bent);
         const motion::Motion there = solved(L, bent, way);
-        if (!solveRows(there, active, y)) {
+        found.relaxed = !solveRows(there, found);
+        if (found.relaxed) {
             for (std::size_t i = 0; i < count_; ++i) prepared_[i].bound = std::min(prepared_[i].bound, 0.0);
-            if (!solveRows(there, active, y)) return motion::Motion::Zero();
+            if (!solveRows(there, found)) return motion::Motion::Zero();
         }
-        if (!releaseStiff(active) || round == kMostReleases) break;
+        if (!friction_.empty() && !back && found.active > 0) {
+            const MotionMatrix unbent = L.triangularView<Eigen::Lower>().solve(MotionMatrix::Identity());
+            rub(X, there, bent ? &unbent : nullptr, memory.rubbing, found);
+        }
+        if (!releaseStiff(found) || round == kMostReleases) break;
     }
-    memory.count = static_cast<std::size_t>(active.size());
+    memory.count = static_cast<std::size_t>(found.active);
     for (std::size_t i = 0; i < memory.count; ++i) {
-        const motion::MotionRow& row = active.row(static_cast<int>(i));
-        memory.held[i] = rows_[row.contact].from;
-        memory.held[i].push = active.lambda(static_cast<int>(i)) / row.length;
+        const motion::ActiveContact& held = found.active_contacts[i];
+        memory.held[i] = rows_[held.contact].from;
+        memory.held[i].push = held.push;
     }
-    return L.transpose().triangularView<Eigen::Upper>().solve(y);
+    return L.transpose().triangularView<Eigen::Upper>().solve(found.u);
 }
 
 /// What of a look's motion is safe to make.
@@ -283,6 +341,7 @@ ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory
     double last = std::numeric_limits<double>::infinity();  // length of the last look's motion
     double astray = 0.0;                                    // of the motions since the last pose that counts
     bool left = false;                                      // a ridge
+    rubs_ = 0;
     for (int i = 0;; ++i) {
         const motion::Motion wanted = pull != nullptr ? pull->wantedAt(metric_, X) : metric_.between(X, X_WH);
         find(X, reachFor(wanted));
@@ -298,19 +357,20 @@ ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory
             astray = 0.0;
         }
         result.converged = kept && last <= kStillMoving;
-        if (result.converged || i == most) return result;
+        if (result.converged || i == most || rubs_ > kMostRubs) return result;
         result.iterations = i + 1;
         remember(X, memory);
         const bool back = !kept && astray > kMostAstray;
         PoseMemory aside = memory;
         motion::Motion u = back ? step(X, motion::Motion::Zero(), true, aside) : step(X, wanted, false, memory);
-        if (!left && kept && u.norm() <= kStillMoving) {
+        if (!left && kept && u.norm() <= kStillMoving && friction_.empty()) {
             const motion::Motion off = offRidge(metric_.between(X_WG, X), memory);
             left = off.squaredNorm() > 0.0;
             u += off;
         }
         const motion::Motion made = shortened(u);
         last = back ? std::numeric_limits<double>::infinity() : u.norm();
+        if (i == 0 || (!back && last > kStillMoving)) memory.rubbing = patches_;
         astray += back ? 0.0 : made.norm();
         X = metric_.moved(X, made);
     }

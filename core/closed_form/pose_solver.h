@@ -7,7 +7,7 @@
 
 #include "core/closed_form/pair_contacts.h"
 #include "core/geometry/near_list.h"
-#include "core/motion/active_set.h"
+#include "core/motion/friction.h"
 #include "core/motion/pull.h"
 
 namespace passung::closed_form {
@@ -24,6 +24,7 @@ struct HeldContact {
 struct PoseMemory {
     std::array<HeldContact, 6> held{};
     std::size_t count = 0;
+    motion::FrictionPatches rubbing;  // of the last motion that was made, or that began a rest
 
     std::span<const HeldContact> all() const noexcept { return {held.data(), count}; }
 };
@@ -42,6 +43,7 @@ inline constexpr int kMostLooks = 24;
 inline constexpr int kFewestLooks = 6;
 inline constexpr int kMostMeetings = 2400;      // ContactSearch::meetings() times looks: what has many has fewer looks
 inline constexpr int kThreadLooks = 12;         // the same with threads, whose looks take longer
+inline constexpr int kMostRubs = 300;           // rows of friction in a solve, after which no look is begun
 inline constexpr double kLongestLook = 2.5e-4;  // of |u| in a look near an obstacle [m]
 inline constexpr double kLongestWay = 7e-4;     // of any point of the held part in such a look [m]
 inline constexpr double kMostRise = 1e-7;       // of any point's arc over its chord in such a look [m]
@@ -81,12 +83,16 @@ inline constexpr double kNearWays = 4.0, kLeastNear = 4e-3;  // [m]
 /// at is not come to, at no place of a look's motion. Where a power is passed at a pose that was looked at, it is
 /// looked at again.
 /// A start in overlap comes out by kRepair a solve, the deepest contacts first.
-/// What a solver knows of earlier poses changes its time, never its result.
+/// Friction: each look's motion is that of motion/friction.h under the same rows and the same B, of which friction has
+/// no part: where a look finds u = 0 all forces balance whatever B is. What slid in the last look that was made slides
+/// on; a solve whose first look makes no way is a rest. A contact is a foot, without torsion of its own. What a solver
+/// knows of earlier poses changes its time, never its result.
 class PoseSolver {
 public:
     /// The held part's pairs, with one metric. Their solids outlive this. `near`: of the same parts, in this order;
-    /// without one all are near.
-    explicit PoseSolver(std::span<const SolidPair> pairs, geometry::NearList near = {});
+    /// without one all are near. `friction`: of each pair; none: nothing rubs.
+    explicit PoseSolver(std::span<const SolidPair> pairs, geometry::NearList near = {},
+                        std::span<const motion::Friction> friction = {});
 
     /// In at most `most` looks, and no more than kMostMeetings lets it have. `pull`: what draws the
     /// part by, with `X_WH` where it would rest. rt-safe.
@@ -107,6 +113,9 @@ public:
     geometry::NearList& near() noexcept { return near_; }
 
     const SolidPair& pair(std::size_t i) const noexcept { return searches_[i].pair(); }
+
+    /// Where the last look's motion rubbed, for it and its contacts' pushes the same; `obstacle` is the pair.
+    const motion::FrictionPatches& patches() const noexcept { return patches_; }
 
     /// The contacts that the last look found, if it was at this pose: where a solve ends that has converged.
     std::size_t foundCount(const Pose& X) const noexcept { return isFound(X) ? found_ : 0; }
@@ -130,10 +139,12 @@ private:
     void remember(const Pose& X, const PoseMemory& memory) noexcept;
     motion::Motion step(const Pose& X, const motion::Motion& wanted, bool back, PoseMemory& memory) noexcept;
     void prepare(const MotionMatrix& L, bool bent) noexcept;
-    bool releaseStiff(const motion::ActiveSet& active) noexcept;
+    bool releaseStiff(const motion::ConstrainedMotion& found) noexcept;
     bool factor(const Pose& X, MotionMatrix& L, motion::Motion& wanted) noexcept;
     motion::Motion offRidge(const motion::Motion& way, const PoseMemory& memory) const noexcept;
-    bool solveRows(const motion::Motion& wanted, motion::ActiveSet& active, motion::Motion& y) noexcept;
+    bool solveRows(const motion::Motion& wanted, motion::ConstrainedMotion& found) noexcept;
+    void rub(const Pose& X, const motion::Motion& wanted, const MotionMatrix* unbent,
+             const motion::FrictionPatches& before, motion::ConstrainedMotion& found) noexcept;
     void add(const Row& row) noexcept;
     double wayOf(const motion::Motion& u) const noexcept;
     motion::Motion shortened(const motion::Motion& u) const noexcept;
@@ -160,6 +171,12 @@ private:
     double sight_ = kReach;                           // within which contacts become rows [m]
     double allowed_ = 0.0;                            // overlap that the solve leaves [m]
     FixedList<Pose, kMostLooks + 1> way_;
+
+    // Of what rubs.
+    std::vector<motion::Friction> friction_;  // of each pair, or none
+    contact::ContactManifold manifold_;
+    motion::FrictionPatches patches_;  // of the last look
+    int rubs_ = 0;                     // rows of friction that were taken up or let go in this solve
 };
 
 }  // namespace passung::closed_form

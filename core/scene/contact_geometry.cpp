@@ -34,7 +34,10 @@ const char* closedFormProblem(const PartSpec& held, const PartSpec& obstacle, co
     if (!hasClosedForm(held) || !hasClosedForm(obstacle))
         return "closed_form needs parts that are parametric shapes, without a mesh or sheet";
     if (isThreadAlone(held, obstacle)) return "closed_form needs a thread_bolt with a thread_nut, or no thread";
-    if (rub(held, obstacle)) return "closed_form needs parts without friction";
+    if (!rub(held, obstacle)) return nullptr;
+    if (!isThread(held)) return "closed_form needs parts without friction, or a thread_bolt with a thread_nut";
+    if (contact.proxy_filter > 0.0)
+        return "closed_form with friction needs a proxy without low-pass (contact.proxy_filter_hz)";
     return nullptr;
 }
 

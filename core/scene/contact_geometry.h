@@ -15,8 +15,8 @@ struct GeometryChoice {
 };
 
 /// Of the held part with one obstacle. Auto: fields for the penalty; for god objects the closed form where both parts
-/// have one (of threads a bolt with a nut) and nothing rubs, else the surfaces, and fields where those cannot do it: a
-/// proxy with a low-pass.
+/// have one (of threads a bolt with a nut) and nothing but threads rubs, else the surfaces, and fields where those
+/// cannot do it: a proxy with a low-pass.
 GeometryChoice geometryOfPair(const PartSpec& held, const PartSpec& obstacle, const ContactSpec& contact);
 
 /// Of a scene, whose pairs all have one: that which each of them can have.

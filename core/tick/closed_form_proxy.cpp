@@ -10,14 +10,18 @@ namespace passung::tick {
 
 namespace {
 
-/// In place of the pushes so far: K λ along each contact's normal (contact_energy.h).
+/// In place of the pushes so far: K λ along each contact's normal, and what rubs (contact_energy.h).
 void noteHold(const HandModel& model, const HeldTarget& target, const Proxy& proxy, const closed_form::PoseMemory& hold,
-              Pushes& pushes) noexcept {
+              const motion::FrictionPatches& rubbing, Pushes& pushes) noexcept {
     clearPushes(pushes);
     for (const closed_form::HeldContact& held : hold.all()) {
         const Vec3 push = held.push * held.contact.normal;
         addPush(model, target, proxy.X_WG, held.contact.point, push,
                 model.contact.stiffness * target.stiffness * push.norm(), pushes.pushes[held.pair]);
+    }
+    for (int p = 0; p < rubbing.count; ++p) {
+        const motion::FrictionPatch& patch = rubbing.patch[static_cast<std::size_t>(p)];
+        addRub(model, target, proxy.X_WG, patch, pushes.pushes[patch.obstacle]);
     }
 }
 
@@ -46,7 +50,7 @@ ClosedFormMemory closedFormMemory(const HandModel& model) {
     ClosedFormMemory memory;
     const auto pairs = pairsOf(model);
     memory.near_hand = nearListOf(model, 0.0);
-    memory.solver = closed_form::PoseSolver(pairs, memory.near_hand);
+    memory.solver = closed_form::PoseSolver(pairs, memory.near_hand, model.friction);
     for (const closed_form::SolidPair& pair : pairs) memory.at_hand.emplace_back(pair);
     memory.has_thread = closed_form::isThread(*model.held_solid) ||
                         std::any_of(model.obstacles.begin(), model.obstacles.end(),
@@ -72,7 +76,7 @@ void followInClosedForm(const HandModel& model, const HandSample& hand, const He
     proxy.X_WG = found.X_WG;
     proxy.clearance = -found.overlap;
     note(found, report);
-    noteHold(model, target, proxy, held.hold, pushes);
+    noteHold(model, target, proxy, held.hold, memory.solver.patches(), pushes);
 }
 
 void filterInClosedForm(const HandModel& model, const HandSample& hand, const HeldTarget& target,

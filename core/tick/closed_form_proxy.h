@@ -19,7 +19,7 @@ namespace passung::tick {
 ///   god_object            sweep: kMostLooks looks, each under all contacts within reach.
 ///   god_object_heuristic  #1 contacts at the last proxy; #2 relief of overlap, the deepest first, by kRepair a tick;
 ///                         #3 the way to the hand; #4 the motion that the contacts leave of it: kHeuristicLooks looks.
-///   Either with threads: kThreadLooks.
+///   Either with threads: kThreadLooks. Where these rub, no look is begun after kMostRubs rows of friction.
 /// Where the looks end before the proxy has come to rest it stays at the last pose without overlap, and goes on in the
 /// next tick (kIterationLimit).
 /// Limit cases: nothing within reach → G = H. A plane → G is H's projection onto it. A start in overlap: as there.
