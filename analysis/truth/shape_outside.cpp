@@ -192,10 +192,9 @@ void addSlotMouth(double x_low, double x_high, double half_y, double chamfer, bo
     });
 }
 
-/// Between two ridges of a thread, by its profile in half planes (ISO 68-1): a trapezium with one open side. `sign`: 1
-/// of a bolt, whose grooves open outwards, -1 of a nut. At `bottom` it is 2 `half` wide, and 1/√3 wider for each length
-/// from there on either side.
-void addGroove(double pitch, double bottom, double half, double middle, double sign, Bound& bound) {
+/// Between two ridges of a thread, by its profile in half planes: a trapezium with one open side. `sign`: 1 of a bolt,
+/// whose grooves open outwards, -1 of a nut. At `bottom` it is 2 `half` wide, and its flanks lean by `lean` from there.
+void addGroove(double pitch, double bottom, double half, double lean, double middle, double sign, Bound& bound) {
     const auto heightOf = [&](const Vec3& p, double near) {  // over the middle of a ridge, the angle being near one
         double phi = std::atan2(p.y(), p.x());
         phi += 2.0 * std::numbers::pi * std::round((near - phi) / (2.0 * std::numbers::pi));
@@ -205,18 +204,30 @@ void addGroove(double pitch, double bottom, double half, double middle, double s
     if (!(least > 0.5 * r)) return;
     const double near = std::atan2(bound.middle.y(), bound.middle.x());
     const double groove = pitch * std::round(heightOf(bound.middle, near) / pitch);
-    const double lead = pitch / (2.0 * std::numbers::pi);
+    const double lead = pitch / (2.0 * std::numbers::pi), cosine = std::cos(lean), sine = std::sin(lean);
     bound.bent((1.0 + lead / least) / least, [&](const Vec3& p) {
         const double out = sign * (radial(p) - bottom), aside = std::abs(heightOf(p, near) - groove) - half;
-        const double beyond = 0.5 * (std::numbers::sqrt3 * aside - out);  // the flank
+        const double beyond = cosine * aside - sine * out;  // the flank
         if (beyond <= 0.0 && out >= 0.0) return 0.0;
         if (aside <= 0.0) return -out;
-        const double along = 0.5 * (std::numbers::sqrt3 * out + aside);  // the flank, from its corner on
+        const double along = cosine * out + sine * aside;  // the flank, from its corner on
         return along >= 0.0 ? beyond : lengthOf(aside, out);
     });
 }
 
-double threadDepth(double pitch) { return 0.625 * 0.5 * std::numbers::sqrt3 * pitch; }
+template <class Thread>
+double flankHeight(const Thread& thread) {
+    return thread.flank_height > 0.0 ? thread.flank_height : 0.625 * 0.5 * std::numbers::sqrt3 * thread.pitch;
+}
+
+/// Half the width of a groove at its bottom. Ridge and groove are equally wide at 3/5 of the height from a bolt's crest
+/// and a nut's root on, the groove by the clearance's half across its flanks more.
+template <class Thread>
+double halfBottom(const Thread& thread, double share) {
+    const double lean = 0.5 * thread.flank_angle;
+    return 0.25 * thread.pitch - share * flankHeight(thread) * std::tan(lean) +
+           thread.clearance * (0.5 - std::sin(lean)) / std::cos(lean);
+}
 
 void add(const ThreadBolt& bolt, Bound& bound) {
     const double radius = 0.5 * bolt.nominal_diameter - bolt.clearance;
@@ -224,7 +235,8 @@ void add(const ThreadBolt& bolt, Bound& bound) {
     bound.beyond(out, radius);
     bound.aboveAndBelow(0.0, bolt.length);
     if (bolt.chamfer > 0.0) bound.beyond(kHalfRoot * (out - Vec3(0, 0, 1)), kHalfRoot * (radius - bolt.chamfer));
-    addGroove(bolt.pitch, radius - threadDepth(bolt.pitch), bolt.pitch / 8.0, 0.5 * bolt.pitch, 1.0, bound);
+    addGroove(bolt.pitch, radius - flankHeight(bolt), halfBottom(bolt, 0.4), 0.5 * bolt.flank_angle, 0.5 * bolt.pitch,
+              1.0, bound);
 }
 
 template <class Plate>
@@ -257,7 +269,7 @@ void add(const KeyedBorePlate& plate, Bound& bound) {
 }
 
 void add(const ThreadNut& nut, Bound& bound) {
-    const double radius = 0.5 * nut.nominal_diameter + nut.clearance, crest = radius - threadDepth(nut.pitch);
+    const double radius = 0.5 * nut.nominal_diameter + nut.clearance, crest = radius - flankHeight(nut);
     addBore(crest, -std::numeric_limits<double>::infinity(), bound);
     bound.aboveAndBelow(-nut.height, 0.0);
     bound.beyond(outwards(bound.middle), 0.5 * nut.outer_diameter);
@@ -267,7 +279,7 @@ void add(const ThreadNut& nut, Bound& bound) {
             return mouthDistance(crest, nut.chamfer, {p.x(), p.y(), -nut.height - p.z()});
         });
     }
-    addGroove(nut.pitch, radius, nut.pitch / 16.0, 0.0, -1.0, bound);
+    addGroove(nut.pitch, radius, halfBottom(nut, 0.6), 0.5 * nut.flank_angle, 0.0, -1.0, bound);
 }
 
 double deepest(const Cylinder& c, const AxialExtent& e) {

@@ -68,13 +68,14 @@ Face sphere(const Vec3& centre, double radius) {
     return about(Face::Kind::Sphere, centre, Vec3::UnitZ(), radius, false);
 }
 
-Face flank(double pitch, double radius, double middle, bool above, bool hollow, double least) {
-    const double quarter = 0.25 * pitch, lead = pitch / (2.0 * std::numbers::pi), cosine = 0.5 * std::numbers::sqrt3;
+Face flank(double pitch, double radius, double run, double middle, bool above, bool hollow, double least) {
+    const double quarter = 0.25 * pitch, lead = pitch / (2.0 * std::numbers::pi);
+    const double cosine = 1.0 / std::sqrt(1.0 + run * run), sine = run * cosine;
     Face face = about(Face::Kind::Helicoid, {0.0, 0.0, above ? middle + quarter : middle - quarter}, Vec3::UnitZ(),
                       radius, hollow);
     const double scale = 1.0 / std::sqrt(1.0 + cosine * cosine * lead * lead / (least * least));
     face.along = scale * (above ? cosine : -cosine);
-    face.out = scale * (hollow ? -0.5 : 0.5);
+    face.out = scale * (hollow ? -sine : sine);
     face.pitch = pitch;
     face.least = least;
     return face;

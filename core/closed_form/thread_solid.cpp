@@ -15,7 +15,7 @@ namespace {
 
 using shape::ThreadForm;
 
-constexpr double kNearAxis = 0.65;  // of a pitch inside the crests of a nut: there flanks cease to count
+constexpr double kNearAxis = 0.7506;  // of a pitch times a flank's cosine, inside a nut's crests: flanks cease to count
 
 constexpr double kSame = 1e-12;  // [m]
 
@@ -113,10 +113,10 @@ private:
 
 /// Two lumps with the faces of `ridge` and a flank each.
 void addRidges(const ThreadForm& form, double middle, bool hollow, const Lump& ridge, SmoothSolid& solid) {
-    const double quarter = 0.25 * form.pitch, radius = form.outer - (quarter - form.pitch / 16.0) * std::numbers::sqrt3;
+    const double least = form.inner - kNearAxis * form.pitch / std::sqrt(1.0 + form.run * form.run);
     for (const bool above : {true, false}) {
         Lump& lump = solid.lumps.emplace_back(ridge);
-        lump.faces.push_back(flank(form.pitch, radius, middle, above, hollow, form.inner - kNearAxis * form.pitch));
+        lump.faces.push_back(flank(form.pitch, form.evenRadius(), form.run, middle, above, hollow, least));
     }
 }
 
@@ -143,7 +143,7 @@ SmoothSolid threadSolid(const shape::ThreadBolt& bolt) {
     addRidges(form, 0.0, false, ridge, solid);
 
     ThreadEdges edges(form, solid);
-    edges.alongCrests(form.outer, form.pitch / 16.0, {bolt.chamfer, bolt.length});
+    edges.alongCrests(form.outer, form.crest(), {bolt.chamfer, bolt.length});
     edges.acrossPlane(bolt.length, {0.0, form.outer});
     edges.acrossPlane(0.0, {0.0, tip});
     if (bolt.chamfer > 0.0) {
@@ -171,7 +171,7 @@ SmoothSolid threadSolid(const shape::ThreadNut& nut) {
     addRidges(form, 0.5 * form.pitch, true, ridge, solid);
 
     ThreadEdges edges(form, solid);
-    edges.alongCrests(form.inner, 0.375 * form.pitch, {nut.chamfer - nut.height, -nut.chamfer});
+    edges.alongCrests(form.inner, form.root(), {nut.chamfer - nut.height, -nut.chamfer});
     for (const double end : {0.0, -nut.height}) {
         edges.acrossPlane(end, {mouth, form.outer});
         if (!(nut.chamfer > 0.0)) continue;

@@ -13,7 +13,8 @@ namespace passung::shape {
 namespace {
 
 /// Nothing that a hand touches is larger; squares of such lengths stay far from overflow.
-constexpr double kLongest = 1000.0;  // [m]
+constexpr double kLongest = 1000.0;                              // [m]
+constexpr double kSteepestFlanks = 2.0 * kIsoFlankAngle / 60.0;  // [rad]
 
 template <class... Ts>
 struct Overloaded : Ts... {
@@ -30,7 +31,11 @@ public:
     void length(const char* key, double value) {
         if (!(value > 0.0 && value <= kLongest)) add(key, value, "must be a length above 0 m, at most 1000 m");
     }
-    void chamferOrClearance(const char* key, double value) {
+    void flankAngle(const char* key, double value) {
+        if (!(value >= kSteepestFlanks * (1.0 - 1e-9) && value <= kIsoFlankAngle * (1.0 + 1e-9)))
+            add(key, value, "must be 2 to 60 degrees", " rad");
+    }
+    void lengthOrNone(const char* key, double value) {
         if (!(value >= 0.0 && value <= kLongest)) add(key, value, "must be a length, 0 m or more (0 = none)");
     }
     /// True if it is, by more than rounding: of what is between the two something must be left.
@@ -39,13 +44,13 @@ public:
         if (!fits) add(key, value, requirement);
         return fits;
     }
-    void add(const char* key, double value, const std::string& requirement) {
+    void add(const char* key, double value, const std::string& requirement, const char* unit = " m") {
         std::array<char, 32> text{};
         const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
         Error error;
         error.message = std::string(kind_) + ": " + requirement;
         error.key = key;
-        error.value = std::string(text.data(), end) + " m";
+        error.value = std::string(text.data(), end) + unit;
         errors_.push_back(error);
     }
     bool empty() const { return errors_.empty(); }
@@ -57,6 +62,8 @@ private:
 };
 
 using Dimensions = std::vector<Dimension>;
+
+constexpr const char *kFlankAngle = "flank_angle_deg", *kFlankHeight = "flank_height";
 
 Dimensions dimensionsOf(const Sphere& s) { return {{"diameter", s.diameter}}; }
 Dimensions dimensionsOf(const Box& b) { return {{"width", b.width}, {"depth", b.depth}, {"height", b.height}}; }
@@ -101,7 +108,9 @@ Dimensions dimensionsOf(const ThreadBolt& b) {
             {"pitch", b.pitch},
             {"length", b.length},
             {"chamfer", b.chamfer},
-            {"clearance", b.clearance}};
+            {"clearance", b.clearance},
+            {kFlankAngle, b.flank_angle},
+            {kFlankHeight, b.flank_height}};
 }
 Dimensions dimensionsOf(const ThreadNut& n) {
     return {{"nominal_diameter", n.nominal_diameter},
@@ -109,9 +118,13 @@ Dimensions dimensionsOf(const ThreadNut& n) {
             {"outer_diameter", n.outer_diameter},
             {"height", n.height},
             {"chamfer", n.chamfer},
-            {"clearance", n.clearance}};
+            {"clearance", n.clearance},
+            {kFlankAngle, n.flank_angle},
+            {kFlankHeight, n.flank_height}};
 }
 
+constexpr double kMostFlankHeight = 0.75;                     // of the pitch
+constexpr double kMostBetweenEdges = 5e-6;                    // [m]
 constexpr double kMostTurns = 100.0, kMostTurnsOfNut = 12.0;  // all of a nut's turns touch at once
 
 constexpr double kMostClearance = 0.25;  // of a pitch: more lets flanks pass each other
@@ -174,6 +187,17 @@ void checkTogether(const KeyedBorePlate& p, Check& check) {
         check.less("chamfer", p.chamfer, std::min(beside_key - p.key_height, 0.5 * p.depth - bore), kMouthInside);
 }
 
+/// Crests that are left, and flanks that touch at their edges.
+bool checkProfile(const ThreadForm& form, Check& check) {
+    const double height = form.outer - form.inner;
+    if (!(height <= kMostFlankHeight * form.pitch && form.crest() > 0.0 && form.root() < 0.5 * form.pitch))
+        check.add(kFlankHeight, height, "must be at most 3/4 of the pitch, and leave crests and roots");
+    else if (form.mostBetweenEdges() > kMostBetweenEdges)
+        check.add(kFlankHeight, height,
+                  "must be less: flanks so steep would overlap by more than 5 µm between their edges");
+    return check.empty();
+}
+
 /// Of a thread that is `length` long.
 bool checkThread(double diameter, double pitch, double length, const char* key, double most_turns, Check& check) {
     if (!(pitch <= 0.25 * diameter)) check.add("pitch", pitch, "must be at most a quarter of the diameter");
@@ -185,6 +209,7 @@ bool checkThread(double diameter, double pitch, double length, const char* key, 
 void checkTogether(const ThreadBolt& b, Check& check) {
     checkThread(b.nominal_diameter, b.pitch, b.length, "length", kMostTurns, check) &&
         check.less("clearance", b.clearance, kMostClearance * b.pitch, kLittleClearance) &&
+        checkProfile(threadOf(b), check) &&
         check.less("chamfer", b.chamfer, std::min(threadOf(b).outer, b.length),
                    "must be less than half the diameter and less than the length");
 }
@@ -192,6 +217,7 @@ void checkTogether(const ThreadBolt& b, Check& check) {
 void checkTogether(const ThreadNut& n, Check& check) {
     checkThread(n.nominal_diameter, n.pitch, n.height, "height", kMostTurnsOfNut, check) &&
         check.less("clearance", n.clearance, kMostClearance * n.pitch, kLittleClearance) &&
+        checkProfile(threadOf(n), check) &&
         check.less("nominal_diameter", n.nominal_diameter, n.outer_diameter - 2.0 * n.clearance,
                    "must be less than the outer diameter, by the clearance on both sides") &&
         check.less("chamfer", n.chamfer, std::min(0.5 * n.outer_diameter - threadOf(n).inner, 0.5 * n.height),
@@ -234,8 +260,10 @@ std::vector<double> dimensions(const Shape& shape) {
 std::vector<Error> validate(const Shape& shape) {
     Check check(kindName(shape));
     for (const auto& [key, value] : namedDimensions(shape)) {
-        if (const std::string_view name = key; name == "chamfer" || name == "clearance")
-            check.chamferOrClearance(key, value);
+        if (const std::string_view name = key; name == "chamfer" || name == "clearance" || name == kFlankHeight)
+            check.lengthOrNone(key, value);
+        else if (name == kFlankAngle)
+            check.flankAngle(key, value);
         else
             check.length(key, value);
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <string>
 #include <variant>
 #include <vector>
@@ -64,12 +65,16 @@ struct KeyedBorePlate {
     double bore_depth;             // = height or more: through
     double chamfer;                // 45° at the mouth, of the bore and of the keyway
 };
+inline constexpr double kIsoFlankAngle = std::numbers::pi / 3.0;  // between a ridge's flanks [rad]
+
 /// A bar with a thread along its whole length: see thread.h. In the plane y = 0, x > 0 a ridge's middle is at z = 0.
 struct ThreadBolt {
     double nominal_diameter;  // over the crests, without clearance
     double pitch, length;
     double chamfer;          // 45° at the tip; 0 = sharp
-    double clearance = 0.0;  // by which the whole profile lies within the nominal one, towards the axis
+    double clearance = 0.0;  // by which crests and roots lie within the nominal ones, flanks by half of it
+    double flank_angle = kIsoFlankAngle;
+    double flank_height = 0.0;  // from root to crest; 0 = as ISO 68-1 has it
 };
 /// A ring with a threaded hole right through, along z: see thread.h. In the plane y = 0, x > 0 a groove's middle is at
 /// z = 0, so that a bolt fits in it at the same pose.
@@ -79,7 +84,9 @@ struct ThreadNut {
     double outer_diameter;
     double height;           // along z
     double chamfer;          // 45° at both mouths, from the crests on; 0 = sharp
-    double clearance = 0.0;  // by which the whole profile lies outside of the nominal one
+    double clearance = 0.0;  // by which crests and roots lie outside of the nominal ones, flanks by half of it
+    double flank_angle = kIsoFlankAngle;
+    double flank_height = 0.0;  // as of ThreadBolt
 };
 
 using Shape = std::variant<Sphere, Box, Cylinder, Torus, Sheet, Peg, SquarePeg, KeyedPeg, BorePlate, SquareBorePlate,
@@ -91,7 +98,7 @@ const char* kindName(const Shape& shape);
 /// True if it looks the same however it is turned about its z axis; a thread does to the eye.
 bool isRound(const Shape& shape);
 
-/// One dimension: its key in scene files and its value [m].
+/// One dimension: its key in scene files and its value [m], [rad].
 struct Dimension {
     const char* key;
     double value;
@@ -100,7 +107,7 @@ struct Dimension {
 /// The dimensions in the order of the struct's members.
 std::vector<Dimension> namedDimensions(const Shape& shape);
 
-/// Their values alone [m].
+/// Their values alone.
 std::vector<double> dimensions(const Shape& shape);
 
 /// Every value that is out of range: keys named as in a scene file, values in metres.

@@ -10,7 +10,7 @@ namespace passung::shape {
 namespace {
 
 constexpr int kFewestPieces = 6;               // of the angles that are searched
-constexpr double kWidestPiece = 0.2;           // [rad]
+constexpr double kWidestPiece = 0.1;           // of flanks 60° apart [rad]
 constexpr double kGolden = 0.381966011250105;  // of an interval
 constexpr double kClosed = 1e-8;               // of the angles that are searched
 constexpr int kMostSteps = 60;
@@ -42,7 +42,9 @@ public:
     double least() {
         const double reach = std::sqrt(least_);
         const double end = reach < r_ ? std::asin(reach / r_) : std::numbers::pi;
-        const int pieces = std::max(kFewestPieces, static_cast<int>(std::ceil(2.0 * end / kWidestPiece)));
+        // Steeper flanks are passed sooner.
+        const double widest = kWidestPiece * std::min(1.0, std::numbers::sqrt3 * surface_.form.run);
+        const int pieces = std::max(kFewestPieces, static_cast<int>(std::ceil(2.0 * end / widest)));
         const double piece = 2.0 * end / pieces;
         double before = at(-end), here = before;
         for (int i = 0; i < pieces; ++i) {

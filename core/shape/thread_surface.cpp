@@ -128,27 +128,39 @@ ThreadSteps stepsFor(const ThreadSurface& surface, double chord_error) {
     const int for_twist = static_cast<int>(std::min<double>(kMostSegments, std::ceil(2.0 * pi * twist / half)));
     const int segments = std::max(segmentsFor(widest, half), (for_twist + 3) / 4 * 4);
     // A spiral's chord is nearer to the axis than a circle's by a share of (dr/dφ / r)².
-    const double spiral = 2.0 * std::pow(form.lead() * std::numbers::sqrt3 / form.inner, 2);
+    const double spiral = 2.0 * std::pow(form.lead() / (form.run * form.inner), 2);
     return {segments,
             (1.0 + spiral) * widest * (1.0 - std::cos(pi / segments) + kVertexRounding) + twist * 2.0 * pi / segments};
 }
 
+/// `out`: 1 of a nut, -1 of a bolt.
+template <class Thread>
+ThreadForm formOf(const Thread& thread, double out) {
+    const double outer = 0.5 * thread.nominal_diameter + out * thread.clearance, half = 0.5 * thread.flank_angle;
+    const double height = thread.flank_height > 0.0 ? thread.flank_height : 0.3125 * std::numbers::sqrt3 * thread.pitch;
+    return {thread.pitch, outer, outer - height, std::tan(half),
+            out * thread.clearance * (0.5 - std::sin(half)) / std::cos(half)};
+}
+
 }  // namespace
 
-ThreadForm threadOf(double diameter, double pitch) {
-    const double outer = 0.5 * diameter;
-    return {pitch, outer, outer - 0.3125 * std::numbers::sqrt3 * pitch};
+ThreadForm threadOf(const ThreadBolt& bolt) { return formOf(bolt, -1.0); }
+ThreadForm threadOf(const ThreadNut& nut) { return formOf(nut, 1.0); }
+
+double ThreadForm::mostBetweenEdges() const {
+    const double secant = std::sqrt(1.0 + run * run), width = (outer - inner) * secant;
+    return lead() * lead() * width * width / (8.0 * secant * run * inner * inner * inner);
 }
 
 double ThreadForm::radiusAt(double zeta) const {
     const double from_ridge = std::abs(zeta - pitch * std::round(zeta / pitch));
-    return std::clamp(outer - std::numbers::sqrt3 * (from_ridge - pitch / 16.0), inner, outer);
+    return std::clamp(outer - (from_ridge - crest()) / run, inner, outer);
 }
 
 std::array<ThreadForm::Line, 4> ThreadForm::lines() const {
-    const double root = 0.375 * pitch, crest = pitch / 16.0, steep = std::numbers::sqrt3;
-    return {Line{-root, -crest, outer + steep * crest, steep}, Line{-crest, crest, outer, 0.0},
-            Line{crest, root, outer + steep * crest, -steep}, Line{root, pitch - root, inner, 0.0}};
+    const double low = root(), high = crest(), steep = 1.0 / run;
+    return {Line{-low, -high, outer + steep * high, steep}, Line{-high, high, outer, 0.0},
+            Line{high, low, outer + steep * high, -steep}, Line{low, pitch - low, inner, 0.0}};
 }
 
 ThreadSurface surfaceOf(const ThreadBolt& bolt) {

@@ -147,7 +147,7 @@ constexpr std::array kTables{
     TableInfo{"shape.bore_plate", "`shape` of kind `bore_plate`", ""},
     TableInfo{"shape.square_bore_plate", "`shape` of kind `square_bore_plate`", ""},
     TableInfo{"shape.keyed_bore_plate", "`shape` of kind `keyed_bore_plate`", ""},
-    TableInfo{"shape.thread_bolt", "`shape` of kind `thread_bolt`", "A right-handed thread with one start and the profile of ISO 68-1, all along. A bolt has in a nut of the same nominal\ndiameter and pitch the sum c of both clearances as play at crests and roots, and c/2 between flanks. Threads need a\ngod object: they have no distance field."},
+    TableInfo{"shape.thread_bolt", "`shape` of kind `thread_bolt`", "A right-handed thread with one start, all along; by default with the profile of ISO 68-1. A bolt has in a nut of the same nominal\ndiameter and pitch the sum c of both clearances as play at crests and roots, and c/2 between flanks. Threads need a\ngod object: they have no distance field."},
     TableInfo{"shape.thread_nut", "`shape` of kind `thread_nut`", "Its counterpart: a ring with the thread right through. A bolt at the nut's own pose fits in it; one that is\nz higher fits when it is turned by z / pitch turns."},
     TableInfo{"shape.fit", "Fit of a `peg`, `keyed_peg`, `bore_plate` or `keyed_bore_plate`", "In the same table, in place of the `diameter` or `bore_diameter`."},
     TableInfo{"contact", "`[contact]`", ""},

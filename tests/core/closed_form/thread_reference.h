@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "core/base/random.h"
@@ -67,9 +68,9 @@ public:
             for (const double z : {0.0, -nut_.height}) nuts(at(radiusAt(nut_, phi, z), z));
         }
         for (const double side : {-1.0, 1.0}) {
-            eachOnHelix(bolt_.nominal_diameter / 2, side * bolt_.pitch / 16, 0.0, bolt_.length, bolt_.pitch, kATurn,
-                        bolts);
-            eachOnHelix(crestOf(nut_), (0.5 + side / 8) * nut_.pitch, -nut_.height, 0.0, nut_.pitch, kATurn, nuts);
+            eachOnHelix(outerOf(bolt_), side * halfAt(bolt_, 0.6), 0.0, bolt_.length, bolt_.pitch, kATurn, bolts);
+            eachOnHelix(crestOf(nut_), nut_.pitch / 2 + side * (nut_.pitch / 2 - halfAt(nut_, -0.4)), -nut_.height, 0.0,
+                        nut_.pitch, kATurn, nuts);
         }
         return residualOf(rows, -pull);
     }
@@ -83,9 +84,20 @@ private:
     /// ISO 68-1: basic profile of both, 5/8 of the sharp triangle's height deep.
     template <class Thread>
     static double depthOf(const Thread& thread) {
-        return 0.625 * std::sqrt(3.0) / 2 * thread.pitch;
+        return thread.flank_height > 0.0 ? thread.flank_height : 0.625 * std::sqrt(3.0) / 2 * thread.pitch;
     }
-    static double crestOf(const shape::ThreadNut& nut) { return nut.nominal_diameter / 2 - depthOf(nut); }
+    /// Half of a bolt's ridge at its crest, and of a nut's hole at its crest: as wide as the groove at 3/5 of the
+    /// height below a bolt's crest. @pre no clearance, but a bolt of one whose flanks keep half of it
+    template <class Thread>
+    static double halfAt(const Thread& thread, double height) {
+        const double lean = thread.flank_angle / 2,
+                     of_clearance = thread.clearance * (0.5 - std::sin(lean)) / std::cos(lean);
+        return thread.pitch / 4 - height * depthOf(thread) * std::tan(lean) -
+               (std::is_same_v<Thread, shape::ThreadBolt> ? of_clearance : -of_clearance);
+    }
+    static double outerOf(const shape::ThreadBolt& bolt) { return bolt.nominal_diameter / 2 - bolt.clearance; }
+    static double outerOf(const shape::ThreadNut& nut) { return nut.nominal_diameter / 2 + nut.clearance; }
+    static double crestOf(const shape::ThreadNut& nut) { return outerOf(nut) - depthOf(nut); }
 
     /// From the middle of the nearest ridge of material, along the axis.
     static double offRidge(double pitch, const Vec3& p, double of_material) {
@@ -98,13 +110,14 @@ private:
     static std::vector<Wall> wallsOf(const Thread& thread, const Vec3& p, bool is_nut) {
         const double r = std::hypot(p.x(), p.y()), lead = thread.pitch / (2 * std::numbers::pi);
         const double sign = is_nut ? -1.0 : 1.0;
-        const double crest = thread.nominal_diameter / 2 - (is_nut ? depthOf(thread) : 0.0);
-        const double root = thread.nominal_diameter / 2 - (is_nut ? 0.0 : depthOf(thread));
-        const double half = thread.pitch / (is_nut ? 8 : 16), off = offRidge(thread.pitch, p, is_nut ? 0.5 : 0.0);
+        const double crest = outerOf(thread) - (is_nut ? depthOf(thread) : 0.0);
+        const double root = outerOf(thread) - (is_nut ? 0.0 : depthOf(thread));
+        const double cosine = std::cos(thread.flank_angle / 2), sine = std::sin(thread.flank_angle / 2);
+        const double half = is_nut ? thread.pitch / 2 - halfAt(thread, -0.4) : halfAt(thread, 0.6);
+        const double off = offRidge(thread.pitch, p, is_nut ? 0.5 : 0.0);
         const Vec3 out = Vec3(p.x(), p.y(), 0) / r, around(-out.y(), out.x(), 0);
-        const double flank = sign * (r - crest) * 0.5 + (std::abs(off) - half) * std::sqrt(3.0) / 2;
-        const Vec3 n =
-            sign * 0.5 * out + (off > 0 ? 1.0 : -1.0) * std::sqrt(3.0) / 2 * (Vec3::UnitZ() - lead / r * around);
+        const double flank = sign * (r - crest) * sine + (std::abs(off) - half) * cosine;
+        const Vec3 n = sign * sine * out + (off > 0 ? 1.0 : -1.0) * cosine * (Vec3::UnitZ() - lead / r * around);
         const Wall ridge =
             flank > sign * (r - crest) ? Wall{flank, n.normalized()} : Wall{sign * (r - crest), sign * out};
         return {ridge, {sign * (r - root), sign * out}};
@@ -113,8 +126,8 @@ private:
     double depthInBolt(const Vec3& p) const {
         double depth = std::min(p.z(), bolt_.length - p.z());
         if (bolt_.chamfer > 0.0)
-            depth = std::min(depth, (bolt_.nominal_diameter / 2 - bolt_.chamfer + p.z() - std::hypot(p.x(), p.y())) /
-                                        std::sqrt(2.0));
+            depth =
+                std::min(depth, (outerOf(bolt_) - bolt_.chamfer + p.z() - std::hypot(p.x(), p.y())) / std::sqrt(2.0));
         return depth > 0.0 ? std::max(0.0, std::min(depth, depthInThread(bolt_, p, false))) : 0.0;
     }
     double depthInNut(const Vec3& p) const {
@@ -134,8 +147,8 @@ private:
     template <class Thread>
     static double radiusAt(const Thread& thread, double phi, double z) {
         const double off = std::abs(offRidge(thread.pitch, {std::cos(phi), std::sin(phi), z}, 0.0));
-        const double in = (off - thread.pitch / 16) * std::sqrt(3.0);
-        return thread.nominal_diameter / 2 - std::clamp(in, 0.0, depthOf(thread));
+        const double in = (off - halfAt(thread, 0.6)) / std::tan(thread.flank_angle / 2);
+        return outerOf(thread) - std::clamp(in, 0.0, depthOf(thread));
     }
 
     void addPoint(Random& random, bool is_nut) {
@@ -144,7 +157,7 @@ private:
         double z = random.uniform(low, high);
         const double draw = random.uniform();
         if (draw < 0.4) {
-            const double edge = is_nut ? 3.0 / 8 : 1.0 / 16;
+            const double edge = is_nut ? halfAt(nut_, -0.4) / nut_.pitch : halfAt(bolt_, 0.6) / bolt_.pitch;
             const double from = (draw < 0.2 ? edge : -edge) + phi / (2 * std::numbers::pi);
             z = pitch * (from + std::round(z / pitch - from));
             if (z < low || z > high) return;
@@ -155,7 +168,7 @@ private:
         if (is_nut)
             r = std::max(r, crestOf(nut_) + nut_.chamfer - std::min(high - z, z - low));
         else if (bolt_.chamfer > 0.0)
-            r = std::min(r, bolt_.nominal_diameter / 2 - bolt_.chamfer + z);
+            r = std::min(r, outerOf(bolt_) - bolt_.chamfer + z);
         (is_nut ? of_nut_ : of_bolt_).emplace_back(r * std::cos(phi), r * std::sin(phi), z);
     }
 

@@ -51,6 +51,9 @@ const std::vector<Shape>& allShapes() {
         ThreadNut{0.008, 0.00125, 0.013, 0.0033, 0.0003},
         ThreadNut{0.02, 0.005, 0.03, 0.011, 0.0035},
         ThreadNut{0.008, 0.00125, 0.013, 0.0033, 0.0003, 0.0002},
+        ThreadBolt{0.01, 0.002, 0.006, 0.0, 0.0, pi / 6, 0.001},
+        ThreadBolt{0.01, 0.002, 0.006, 0.0004, 0.0001, pi / 9, 0.0008},
+        ThreadNut{0.01, 0.002, 0.016, 0.005, 0.0003, 0.0001, pi / 6, 0.001},
     };
     return shapes;
 }
@@ -96,12 +99,19 @@ bool inKeyed(double diameter, double key_width, double key_height, double by, do
 }
 
 /// ISO 68-1: crest of a bolt P/8 wide, root P/4, flanks 60° apart, 5/8 of the sharp triangle's height deep; a ridge's
-/// middle goes up by P a turn.
-double threadRadius(double diameter, double pitch, const Vec3& p) {
+/// middle goes up by P a turn. Other flanks: ridge and groove as wide at 3/5 of the height, but for the clearance c,
+/// which makes a bolt's ridge narrower, a nut's groove wider, by c/2 across its flanks beside what c along the radius
+/// does.
+double heightOf(double pitch, double height) { return height > 0.0 ? height : 5.0 / 8 * std::sqrt(3.0) / 2 * pitch; }
+template <class Thread>
+double threadRadius(const Thread& thread, double diameter, const Vec3& p) {
+    const double pitch = thread.pitch, lean = thread.flank_angle / 2, height = heightOf(pitch, thread.flank_height);
     const double turns = p.z() / pitch - std::atan2(p.y(), p.x()) / (2 * pi);
     const double off = std::abs(turns - std::round(turns)) * pitch;  // from the ridge's middle
-    const double depth = 5.0 / 8 * std::sqrt(3.0) / 2 * pitch;
-    return diameter / 2 - std::clamp((off - pitch / 16) * std::tan(pi / 3), 0.0, depth);
+    const double wider = (thread.clearance / 2 - thread.clearance * std::sin(lean)) / std::cos(lean);
+    const double crest =
+        pitch / 4 - 0.6 * height * std::tan(lean) + (diameter > thread.nominal_diameter ? wider : -wider);
+    return diameter / 2 - std::clamp((off - crest) / std::tan(lean), 0.0, height);
 }
 
 /// Of the whole profile, which its clearance moves.
@@ -145,12 +155,12 @@ bool isInside(const Shape& shape, const Vec3& p) {
         return inBlock(b->width, b->depth, b->height, p) && !in_pocket;
     }
     if (const auto* b = std::get_if<ThreadBolt>(&shape))
-        return z > 0.0 && z < b->length && r < threadRadius(widthOf(*b), b->pitch, p) &&
+        return z > 0.0 && z < b->length && r < threadRadius(*b, widthOf(*b), p) &&
                r < widthOf(*b) / 2 - b->chamfer + (b->chamfer > 0.0 ? z : 0.0);
     if (const auto* n = std::get_if<ThreadNut>(&shape)) {
         const double from_mouth = std::min(-z, n->height + z);
-        const double crest = widthOf(*n) / 2 - 5.0 / 8 * std::sqrt(3.0) / 2 * n->pitch;
-        const bool in_hole = r <= threadRadius(widthOf(*n), n->pitch, p) || r <= crest + n->chamfer - from_mouth;
+        const double crest = widthOf(*n) / 2 - heightOf(n->pitch, n->flank_height);
+        const bool in_hole = r <= threadRadius(*n, widthOf(*n), p) || r <= crest + n->chamfer - from_mouth;
         return from_mouth > 0.0 && r < n->outer_diameter / 2 && !in_hole;
     }
     if (const auto* b = std::get_if<BorePlate>(&shape)) {
@@ -253,15 +263,15 @@ Swept sweep(double low, double high, const Radius& radius) {
 
 Swept sweptBy(const ThreadBolt& b) {
     return sweep(0.0, b.length, [&](double phi, double z) {
-        const double r = threadRadius(widthOf(b), b.pitch, {std::cos(phi), std::sin(phi), z});
+        const double r = threadRadius(b, widthOf(b), {std::cos(phi), std::sin(phi), z});
         return std::min(r, widthOf(b) / 2 - b.chamfer + (b.chamfer > 0.0 ? z : 0.0) + (b.chamfer > 0.0 ? 0.0 : 1.0));
     });
 }
 
 Swept sweptBy(const ThreadNut& n) {
     return sweep(-n.height, 0.0, [&](double phi, double z) {
-        const double r = threadRadius(widthOf(n), n.pitch, {std::cos(phi), std::sin(phi), z});
-        const double crest = widthOf(n) / 2 - 5.0 / 8 * std::sqrt(3.0) / 2 * n.pitch;
+        const double r = threadRadius(n, widthOf(n), {std::cos(phi), std::sin(phi), z});
+        const double crest = widthOf(n) / 2 - heightOf(n.pitch, n.flank_height);
         return std::max(r, crest + n.chamfer - std::min(-z, n.height + z));
     });
 }
@@ -585,6 +595,10 @@ TEST(ShapeValidation, NamesEachValueThatCannotBe) {
     EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.013, 0.006, 0.0, 0.00025}), Keys{"clearance"});
     EXPECT_EQ(keysOf(ThreadBolt{0.008, 0.001, 0.02, 0.0, -0.0001}), Keys{"clearance"});
     EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.013, 0.0121, 0.0}), Keys{"height"});
+    EXPECT_EQ(keysOf(ThreadBolt{0.008, 0.001, 0.02, 0.0, 0.0, pi / 91}), Keys{"flank_angle_deg"});
+    EXPECT_EQ(keysOf(ThreadBolt{0.02, 0.005, 0.02, 0.0, 0.0, pi / 90, 0.0}), Keys{"flank_height"});  // between edges
+    EXPECT_EQ(keysOf(ThreadBolt{0.008, 0.001, 0.02, 0.0, 0.0, pi / 3, 0.0008}), Keys{"flank_height"});
+    EXPECT_EQ(keysOf(ThreadBolt{0.008, 0.001, 0.02, 0.0, 0.0, pi / 90, 0.0001}), Keys{});
     EXPECT_EQ(keysOf(ThreadNut{0.008, nan, 0.013, 0.006, 0.0}), Keys{"pitch"});
     EXPECT_EQ(keysOf(ThreadNut{0.008, 0.001, 0.013, 0.006, 0.0031}), Keys{"chamfer"});  // mouths meet
     EXPECT_EQ(keysOf(SquareBorePlate{0.06, 0.05, 0.03, 0.06, 0.02, 0.02, 0.0}), Keys{"pocket_width"});

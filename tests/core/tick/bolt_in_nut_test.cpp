@@ -43,6 +43,59 @@ Pose handAt(double t) {
             Vec3(0, 0, kStart + turned * kBolt.pitch / (2.0 * std::numbers::pi)) + away};
 }
 
+/// What came of the hand's way.
+struct Followed {
+    double deepest = 0.0;  // overlap [m]
+    double beyond = 0.0;   // largest step of the force beyond the hand's [N]
+    double off = 0.0;      // the thread [m]
+    double turned = 0.0;   // [rad]
+    double work = 0.0;     // that the contact did on the hand in all [J]
+    int late = 0, violations = 0;
+};
+
+constexpr int kTicks = 6500;
+
+Followed follow(const scene::SceneSpec& spec) {
+    test::Bench bench(spec);
+    const closed_form::ThreadReference truth(kBolt, kNut, 8000, 1);
+    std::vector<double> spent;
+    spent.reserve(kTicks);
+    Followed result;
+    Wrench before;
+    Pose X_last = handAt(0.0), X_before = handAt(-1e-3);
+    for (int i = 0; i < kTicks; ++i) {
+        const Pose X_WH = handAt(1e-3 * i);
+        const support::RtGuard guard;
+        const std::int64_t begin = threadProcessorNanoseconds();
+        const TickOutput out = bench.step(X_WH);
+        spent.push_back(1e-3 * static_cast<double>(threadProcessorNanoseconds() - begin));
+        result.violations += static_cast<int>(guard.violations());
+        result.late += (out.frame.status & kIterationLimit) != 0 ? 1 : 0;
+        const Vec3 force = out.F_D_B.force, way = X_WH.p - X_before.p;
+        if (i > 0) {
+            result.beyond = std::max(result.beyond, (force - before.force).norm() - 2000.0 * way.norm());
+            result.work +=
+                0.5 * (force + before.force).dot(way) +
+                0.5 * (out.F_D_B.torque + before.torque).dot(rotationVector(X_WH.q * X_before.q.conjugate()));
+        }
+        before = out.F_D_B;
+        X_before = X_WH;
+        result.turned += rotationVector(out.X_WG.q * X_last.q.conjugate()).z();
+        X_last = out.X_WG;
+        const double tilt = (out.X_WG.q * Vec3::UnitZ()).head<2>().norm();
+        const double aside = std::abs(out.X_WG.p.z() - kStart - result.turned * kBolt.pitch / (2.0 * std::numbers::pi));
+        result.off = std::max(result.off, aside - 0.5 * kBolt.nominal_diameter * tilt);
+        if (i % 20 == 0) result.deepest = std::max(result.deepest, truth.overlap(out.X_WG));
+    }
+    std::sort(spent.begin(), spent.end());
+    std::printf(
+        "overlap %.4f um, step beyond the hand's %.4f N, off the thread %.1f um, late %d of %d, work %.4f J; median "
+        "%.0f p99.9 %.0f most %.0f us\n",
+        1e6 * result.deepest, result.beyond, 1e6 * result.off, result.late, kTicks, result.work, spent[kTicks / 2],
+        spent[kTicks * 999 / 1000], spent.back());
+    return result;
+}
+
 class BoltUnderGodObject : public testing::TestWithParam<ContactMethod> {};
 
 TEST_P(BoltUnderGodObject, TurnsInSmoothlyWithoutOverlap) {
@@ -50,46 +103,35 @@ TEST_P(BoltUnderGodObject, TurnsInSmoothlyWithoutOverlap) {
     // turn, but for its play; a spring's force changes no faster than the hand moves, but for some hundredths.
     const auto spec = boltInNut(GetParam());
     ASSERT_EQ(scene::geometryOf(spec).geometry, scene::Geometry::ClosedForm);
-    test::Bench bench(spec);
-    const closed_form::ThreadReference truth(kBolt, kNut, 8000, 1);
-    constexpr int kTicks = 6500;
-    std::vector<double> spent;
-    spent.reserve(kTicks);
-    double beyond = 0.0, deepest = 0.0, off = 0.0, turned = 0.0;
-    Vec3 before = Vec3::Zero();
-    Pose X_last = handAt(0.0);
-    int late = 0, violations = 0;
-    for (int i = 0; i < kTicks; ++i) {
-        const Pose X_WH = handAt(1e-3 * i), X_before = handAt(1e-3 * (i - 1));
-        const support::RtGuard guard;
-        const std::int64_t begin = threadProcessorNanoseconds();
-        const TickOutput out = bench.step(X_WH);
-        spent.push_back(1e-3 * static_cast<double>(threadProcessorNanoseconds() - begin));
-        violations += static_cast<int>(guard.violations());
-        late += (out.frame.status & kIterationLimit) != 0 ? 1 : 0;
-        const Vec3 force = out.F_D_B.force;
-        if (i > 0) beyond = std::max(beyond, (force - before).norm() - 2000.0 * (X_WH.p - X_before.p).norm());
-        before = force;
-        turned += rotationVector(out.X_WG.q * X_last.q.conjugate()).z();
-        X_last = out.X_WG;
-        const double tilt = (out.X_WG.q * Vec3::UnitZ()).head<2>().norm();
-        const double aside = std::abs(out.X_WG.p.z() - kStart - turned * kBolt.pitch / (2.0 * std::numbers::pi));
-        off = std::max(off, aside - 0.5 * kBolt.nominal_diameter * tilt);
-        if (i % 20 == 0) deepest = std::max(deepest, truth.overlap(out.X_WG));
-    }
-    std::sort(spent.begin(), spent.end());
-    std::printf(
-        "overlap %.4f um, step beyond the hand's %.4f N, off the thread %.1f um, late %d of %d; median %.0f "
-        "p99.9 %.0f most %.0f us\n",
-        1e6 * deepest, beyond, 1e6 * off, late, kTicks, spent[kTicks / 2], spent[kTicks * 999 / 1000], spent.back());
-    EXPECT_LE(deepest, 1e-7);
-    EXPECT_LE(beyond, 0.05);
-    EXPECT_LT(turned, -2.9 * 2.0 * std::numbers::pi);
+    const Followed followed = follow(spec);
+    EXPECT_LE(followed.deepest, 1e-7);
+    EXPECT_LE(followed.beyond, 0.05);
+    EXPECT_LT(followed.turned, -2.9 * 2.0 * std::numbers::pi);
     // Beside the play of the flanks a tilt lifts the axis by no more than it lifts the crests.
-    EXPECT_LE(off, kPlay);
-    EXPECT_EQ(late, 0);
+    EXPECT_LE(followed.off, kPlay);
+    EXPECT_EQ(followed.late, 0);
     if (support::RtGuard::available()) {
-        EXPECT_EQ(violations, 0);
+        EXPECT_EQ(followed.violations, 0);
+    }
+}
+
+TEST_P(BoltUnderGodObject, TurnsInAgainstFriction) {
+    // Truth: as above; energy: what rubs takes work from the hand, and gives none.
+    auto spec = boltInNut(GetParam());
+    for (scene::PartSpec& part : spec.parts) {
+        part.friction = 0.2;
+        part.sliding_friction = 0.15;
+    }
+    ASSERT_EQ(scene::geometryOf(spec).geometry, scene::Geometry::ClosedForm);
+    const Followed followed = follow(spec);
+    EXPECT_LE(followed.deepest, 1e-7);
+    EXPECT_LE(followed.beyond, 0.05);
+    EXPECT_LT(followed.turned, -2.5 * 2.0 * std::numbers::pi);
+    EXPECT_LE(followed.off, kPlay);
+    EXPECT_LT(followed.work, -0.01);
+    EXPECT_LE(followed.late, kTicks / 5);  // rows of friction are counted, and end a tick
+    if (support::RtGuard::available()) {
+        EXPECT_EQ(followed.violations, 0);
     }
 }
 

@@ -88,14 +88,16 @@ TEST(SceneReader, ReadsEveryShape) {
                        R"(key_width = 7, key_height = 4, bore_depth = "through")"),
               "keyed_bore_plate width 60 depth 50 height 30 bore_diameter 21 key_width 7 key_height 4 bore_depth 30 "
               "chamfer 0");
-    EXPECT_EQ(valuesOf(R"("thread_bolt", length = 50, pitch = 2, nominal_diameter = 20)"),
-              "thread_bolt nominal_diameter 20 pitch 2 length 50 chamfer 0 clearance 0");
+    EXPECT_EQ(
+        valuesOf(R"("thread_bolt", length = 50, pitch = 2, nominal_diameter = 20)"),
+        "thread_bolt nominal_diameter 20 pitch 2 length 50 chamfer 0 clearance 0 flank_angle_deg 1047 flank_height 0");
     EXPECT_EQ(valuesOf(R"("thread_nut", outer_diameter = 60, pitch = 8, nominal_diameter = 40, height = 16, )"
                        R"(chamfer = 2, flank_angle_deg = 60, clearance = 1)"),
-              "thread_nut nominal_diameter 40 pitch 8 outer_diameter 60 height 16 chamfer 2 clearance 1");
+              "thread_nut nominal_diameter 40 pitch 8 outer_diameter 60 height 16 chamfer 2 clearance 1 "
+              "flank_angle_deg 1047 flank_height 0");
     const auto unbuilt =
         read(R"(part = [{ name = "a", held = true, shape = { kind = "thread_bolt", length = 50, pitch = 2, )"
-             R"(nominal_diameter = 20, flank_angle_deg = 30 } }])");
+             R"(nominal_diameter = 20, flank_angle_deg = 1 } }])");
     ASSERT_FALSE(unbuilt);
     EXPECT_EQ(unbuilt.errors().front().key, "part.a.shape.flank_angle_deg");
 }
