@@ -12,9 +12,11 @@ namespace {
 
 constexpr const char* kCounted = "over the attempts with counted = 1 in trials.csv";
 constexpr const char* kHorizon = "restricted_to_s";
-constexpr const char* kRestricted =
-    "area under the Kaplan-Meier curve of time_s with finished from 0 to restricted_to_s, carried on level after the "
-    "last time: the mean of min(time_s, restricted_to_s) where whatever is not finished ended at a time-out";
+
+const store::ViewColumn& ofCells(std::string_view name) { return store::viewColumn(store::StudyView::Cells, name); }
+
+/// Of the restricted mean.
+const std::string& restrictedFormula() { return ofCells("restricted_mean").formula; }
 
 /// Columns that the long table and the wide ones begin with. Refers to `study`.
 ColumnsOf<Cell> leadingColumns(const StudyData& study) {
@@ -68,24 +70,18 @@ ColumnsOf<Cell> restrictedColumns(const Column& measure) {
              measure.label + ", restricted mean",
              "number",
              [name = measure.name](const Cell& c) { return valueOf(c, name); },
-             {.unit = measure.unit, .formula = kRestricted}},
-            {kHorizon,
-             "Up to where that mean goes: the shortest time-out of the block's conditions",
-             "number",
-             &Cell::horizon_s,
-             {.unit = "s", .formula = "where the stored plan tells no time-out: the longest time_s of the block"}}};
+             {.unit = measure.unit, .formula = restrictedFormula()}},
+            {ofCells(kHorizon), "number", &Cell::horizon_s}};
 }
 
 /// Columns of cells_long.csv. Refers to `study`.
 ColumnsOf<Cell> cellColumns(const StudyData& study) {
     ColumnsOf<Cell> columns = leadingColumns(study);
-    append(columns,
-           {{"condition", "Name of the condition", "text", [](const Cell& c) { return c.condition->condition; }}});
+    append(columns, {{ofTrials("condition"), "text", [](const Cell& c) { return c.condition->condition; }}});
     appendFactors(columns, study, [](const Cell& c) { return c.condition->levels; });
-    append(columns,
-           {{"n_trials", "Attempts counted", "integer", trialsOf, {.formula = std::string("count ") + kCounted}},
-            {"n_success", "Attempts counted that succeeded", "integer", successesOf},
-            {"success_share", "Share of success", "number", successShare, {.formula = "n_success / n_trials"}}});
+    append(columns, {{ofCells("n_trials"), "integer", trialsOf},
+                     {ofCells("n_success"), "integer", successesOf},
+                     {ofCells("success_share"), "number", successShare}});
     for (const store::MeasureRow& row : study.measures) {
         const Column measure = measureColumn(row);
         if (isCensored(measure.name)) append(columns, restrictedColumns(measure));
@@ -163,7 +159,7 @@ ColumnOf<WideRow> valueColumn(const Column& measure, const ConditionColumn& colu
                 return value == row.values.end() ? kMissing : cell(value->second);
             },
             {.unit = measure.unit,
-             .formula = censored ? std::string(kRestricted) + "; restricted_to_s: see cells_long.csv"
+             .formula = censored ? restrictedFormula() + "; restricted_to_s: see cells_long.csv"
                                  : what + " " + kCounted + " that have a value; value: " + measure.formula,
              .formula_version = measure.formula_version}};
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/export/table.h"
+#include "study/store/schema/view_columns.h"
 
 namespace passung::exporter {
 
@@ -33,6 +34,10 @@ struct ColumnOf {
     ColumnOf(std::string_view name, std::string_view label, std::string_view type, Getter<Row> get,
              const ColumnDetails& details = {})
         : description(describe(name, label, type, details)), text(std::move(get)) {}
+    /// What a view of the database has too.
+    ColumnOf(const store::ViewColumn& column, std::string_view type, Getter<Row> get, const ColumnLevels& levels = {})
+        : ColumnOf(column.name, column.label, type, std::move(get),
+                   {column.unit, levels, column.formula, column.formula_version}) {}
     ColumnOf(Column column, Getter<Row> get) : description(std::move(column)), text(std::move(get)) {}
 
     Column description;

@@ -16,36 +16,29 @@ namespace {
 using questionnaire::Definition;
 using store::QuestionnaireRunRow;
 
+const store::ViewColumn& ofScores(std::string_view name) { return store::viewColumn(store::StudyView::Scores, name); }
+
 /// Who was asked what, and when: columns that items and scores begin with. Refers to `counted`.
 ColumnsOf<QuestionnaireRunRow> runColumns(const CountedRuns& counted) {
-    ColumnsOf<QuestionnaireRunRow> columns = participantSessionColumns<QuestionnaireRunRow>();
+    using Row = QuestionnaireRunRow;
+    ColumnsOf<Row> columns = participantSessionColumns<Row>();
     append(columns,
-           {{"questionnaire", "Key of the questionnaire", "text", &QuestionnaireRunRow::questionnaire},
-            {"version", "Version of its items and texts", "text", &QuestionnaireRunRow::version},
-            {"language", "Language in which it was shown", "text", &QuestionnaireRunRow::language},
-            {"moment",
-             "When it was asked",
+           {{ofScores("questionnaire"), "text", &Row::questionnaire},
+            {ofScores("version"), "text", &Row::version},
+            {ofScores("language"), "text", &Row::language},
+            {ofScores("moment"),
              "text",
-             &QuestionnaireRunRow::moment,
-             {.levels = {"session_start", "before_block", "after_block", "after_trial", "after_condition",
-                         "session_end"}}},
-            {"block_index", "Number of the block, from 0; NA at the session's start and end", "integer",
-             &QuestionnaireRunRow::block_index},
-            blockColumn<QuestionnaireRunRow>(),
-            {"trial_index", "The trial that it is about, if it is about one", "integer",
-             &QuestionnaireRunRow::trial_index},
-            {"condition", "The condition that it is about, if it is about one; its levels: see cells_long.csv", "text",
-             &QuestionnaireRunRow::condition},
-            {"completed_utc", "When the last answer was given", "time", &QuestionnaireRunRow::completed_utc},
-            {"counted",
-             "1 if means and reliability count this form: of a counted session (see sessions.csv) the newest one about "
-             "its "
-             "occasion",
+             &Row::moment,
+             {"session_start", "before_block", "after_block", "after_trial", "after_condition", "session_end"}},
+            {ofScores("block_index"), "integer", &Row::block_index},
+            blockColumn<Row>(),
+            {ofScores("trial_index"), "integer", &Row::trial_index},
+            {ofScores("condition"), "text", &Row::condition},
+            {ofScores("completed_utc"), "time", &Row::completed_utc},
+            {ofScores("counted"),
              "0/1",
-             [&counted](const QuestionnaireRunRow& run) {
-                 return std::binary_search(counted.begin(), counted.end(), &run);
-             },
-             {.levels = {"0", "1"}}}});
+             [&counted](const Row& run) { return std::binary_search(counted.begin(), counted.end(), &run); },
+             {"0", "1"}}});
     return columns;
 }
 
@@ -91,23 +84,18 @@ std::string classOf(const ScoredScale& row) {
 
 ColumnsOf<store::ScoreRow> scoreCounts() {
     using store::ScoreRow;
-    return {
-        {"n_items", "Answers that enter; one that enters by two scales counts twice", "integer", &ScoreRow::n_items},
-        {"n_missing", "Of them missing", "integer", &ScoreRow::n_missing},
-        {"scoring_version", "Counts changes of the formulas", "integer", &ScoreRow::scoring_version}};
+    return {{ofScores("n_items"), "integer", &ScoreRow::n_items},
+            {ofScores("n_missing"), "integer", &ScoreRow::n_missing},
+            {ofScores("scoring_version"), "integer", &ScoreRow::scoring_version}};
 }
 
 ColumnsOf<ScoredScale> scoreColumns(const CountedRuns& counted) {
     ColumnsOf<ScoredScale> columns;
     append(columns, runColumns(counted), runOf<ScoredScale>);
-    append(columns, {{"scale", "Name of the scale", "text", [](const ScoredScale& row) { return row.score->scale; }},
+    append(columns, {{ofScores("scale"), "text", [](const ScoredScale& row) { return row.score->scale; }},
                      {"scale_label", "What it measures", "text",
                       [](const ScoredScale& row) { return row.scale != nullptr ? row.scale->label : kMissing; }},
-                     {"score",
-                      "NA: too many answers are missing",
-                      "number",
-                      [](const ScoredScale& row) { return row.score->value; },
-                      {.formula = "see scale_formula"}},
+                     {ofScores("score"), "number", [](const ScoredScale& row) { return row.score->value; }},
                      {"class", "Named range that the score is in; NA without classes", "text", classOf}});
     append(columns, scoreCounts(), [](const ScoredScale& row) -> const store::ScoreRow& { return *row.score; });
     append(columns, {{"scale_formula", "How the score is computed", "text", [](const ScoredScale& row) {

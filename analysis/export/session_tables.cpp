@@ -36,27 +36,17 @@ std::string devicesOf(const SessionRow& session, const StudyData& study) {
 }
 
 ColumnsOf<EventRow> eventColumns() {
+    const auto of = [](std::string_view name) -> const store::ViewColumn& {
+        return store::viewColumn(store::StudyView::Events, name);
+    };
     ColumnsOf<EventRow> columns = participantSessionColumns<EventRow>();
-    append(
-        columns,
-        {{"t_s",
-          "Session time: 1 ms for every cycle of the haptic loop, missed ones too, from the session's first attempt "
-          "on. "
-          "It runs in attempts and rests only and stands still in between, in instructions, questionnaires and pauses "
-          "and between an interruption and the resume, after which it goes on from the last time that was stored: "
-          "differences across these are not the time that passed, which t_utc tells where epoch is wall",
-          "number",
-          [](const EventRow& event) { return secondsCell(event.t_ns); },
-          {.unit = "s"}},
-         {"t_utc",
-          "When, by the session's epoch (see sessions.csv): by the wall clock, pauses included, or in virtual time "
-          "2000-01-01T00:00:00Z + t_s",
-          "time", &EventRow::t_utc},
-         {"trial_index", "Trial that it belongs to", "integer", &EventRow::trial_index},
-         {"attempt_no", "Attempt that it belongs to", "integer", &EventRow::attempt_no},
-         {"source", "Who reported it", "text", &EventRow::source},
-         {"event", "What happened", "text", &EventRow::event},
-         {"payload_json", "More about it, as JSON", "text", &EventRow::payload_json}});
+    append(columns, {{of("t_s"), "number", [](const EventRow& event) { return secondsCell(event.t_ns); }},
+                     {of("t_utc"), "time", &EventRow::t_utc},
+                     {of("trial_index"), "integer", &EventRow::trial_index},
+                     {of("attempt_no"), "integer", &EventRow::attempt_no},
+                     {of("source"), "text", &EventRow::source},
+                     {of("event"), "text", &EventRow::event},
+                     {of("payload_json"), "text", &EventRow::payload_json}});
     return columns;
 }
 

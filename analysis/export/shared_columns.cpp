@@ -4,21 +4,13 @@ namespace passung::exporter {
 
 using store::AttemptRow;
 
-ColumnOf<AttemptRow> trialIndexColumn() {
-    return {"trial_index", "Number of the trial in the session, from 0", "integer", &AttemptRow::trial_index};
-}
+ColumnOf<AttemptRow> trialIndexColumn() { return {ofTrials("trial_index"), "integer", &AttemptRow::trial_index}; }
 
-ColumnOf<AttemptRow> attemptNumberColumn() {
-    return {"attempt_no", "Number of the attempt at this trial, from 1", "integer", &AttemptRow::attempt_no};
-}
+ColumnOf<AttemptRow> attemptNumberColumn() { return {ofTrials("attempt_no"), "integer", &AttemptRow::attempt_no}; }
 
-ColumnOf<AttemptRow> conditionColumn() {
-    return {"condition", "Name of the condition: its levels joined by /", "text", &AttemptRow::condition};
-}
+ColumnOf<AttemptRow> conditionColumn() { return {ofTrials("condition"), "text", &AttemptRow::condition}; }
 
-ColumnOf<AttemptRow> validColumn() {
-    return {"valid", "1 if the attempt may be analysed", "0/1", &AttemptRow::valid, {.levels = {"0", "1"}}};
-}
+ColumnOf<AttemptRow> validColumn() { return {ofTrials("valid"), "0/1", &AttemptRow::valid, {"0", "1"}}; }
 
 ColumnsOf<AttemptRow> attemptColumns() {
     ColumnsOf<AttemptRow> columns = participantSessionColumns<AttemptRow>();

@@ -10,21 +10,21 @@ namespace passung::exporter {
 
 // Columns that several tables have, of any row with the members that are named here.
 
+inline const store::ViewColumn& ofTrials(std::string_view name) {
+    return store::viewColumn(store::StudyView::Trials, name);
+}
+
 /// participant_id, kind.
 template <class Row>
 ColumnsOf<Row> participantColumns() {
-    return {{"participant_id", "Code of the participant", "text", &Row::participant_id},
-            {"kind",
-             "Real person, pilot or simulated participant",
-             "text",
-             &Row::kind,
-             {.levels = plan::participantKindNames()}}};
+    return {{ofTrials("participant_id"), "text", &Row::participant_id},
+            {ofTrials("kind"), "text", &Row::kind, plan::participantKindNames()}};
 }
 
 /// session.
 template <class Row>
 ColumnOf<Row> sessionColumn(std::int64_t Row::*ordinal = &Row::session_ordinal) {
-    return {"session", "Number of the participant's session, from 1", "integer", ordinal};
+    return {ofTrials("session"), "integer", ordinal};
 }
 
 /// participant_id, kind, session.
@@ -39,30 +39,25 @@ ColumnsOf<Row> participantSessionColumns() {
 template <class Row>
 ColumnsOf<Row> whoColumns() {
     ColumnsOf<Row> columns = participantColumns<Row>();
-    append(columns, {{"group",
-                      "Group of the between-subjects factors; all if there is none; NA: the slot was given back, see "
-                      "order_sequence",
-                      "text", &Row::group}});
+    append(columns, {{ofTrials("group"), "text", &Row::group}});
     return columns;
 }
 
 /// order_sequence, by sequenceOf(). Refers to `study`.
 template <class Row>
 ColumnOf<Row> sequenceColumn(const StudyData& study) {
-    return {"order_sequence",
-            "Row of the counterbalancing that the participant has, from 0: sequence_index of participants.csv; NA: the "
-            "slot was given back, as after a session that did not complete and by exclusion",
-            "integer", [&study](const Row& row) { return sequenceOf(study, row.participant_id); }};
+    return {ofTrials("order_sequence"), "integer",
+            [&study](const Row& row) { return sequenceOf(study, row.participant_id); }};
 }
 
 template <class Row>
 ColumnOf<Row> blockIndexColumn() {
-    return {"block_index", "Number of the block, from 0", "integer", &Row::block_index};
+    return {ofTrials("block_index"), "integer", &Row::block_index};
 }
 
 template <class Row>
 ColumnOf<Row> blockColumn() {
-    return {"block", "Name of the block", "text", &Row::block};
+    return {ofTrials("block"), "text", &Row::block};
 }
 
 /// A column for each factor of the study, by the levels of the row's condition.
@@ -80,7 +75,8 @@ void appendFactors(ColumnsOf<Row>& columns, const StudyData& study, GetLevels le
 /// protocol_sha256; `where`: what the label says of the text's place.
 template <class Row>
 ColumnOf<Row> protocolColumn(const std::string& where = "") {
-    return {"protocol_sha256", "SHA-256 of the protocol's text" + where, "text", &Row::protocol_sha256};
+    const store::ViewColumn& column = ofTrials("protocol_sha256");
+    return {column.name, column.label + where, "text", &Row::protocol_sha256};
 }
 
 inline constexpr const char* kInFolder = ", see protocol/";

@@ -17,26 +17,24 @@ namespace {
 using store::AttemptRow;
 using store::StaircaseStepRow;
 
-constexpr const char* kEstimate =
-    "up-down: mean of the reversals but the first ones, an even number; psi: where the posterior is highest";
+const store::ViewColumn& ofThresholds(std::string_view name) {
+    return store::viewColumn(store::StudyView::Thresholds, name);
+}
 constexpr double kFitLapse = 0.02;  // share of trials left to chance, of every fit
 constexpr const char* kFit =
     "of a pair, by reference: the likeliest sigma of P(comparison named) = 0.01 + 0.98 Phi(x / (sqrt(2) sigma)), x = "
     "level - reference or, on a logarithmic axis, ln(level / reference), over the track's trials that count; NA: the "
     "reference is not known, or no sigma explains the answers best";
 constexpr const char* kFitBound = "95 % interval of sigma by likelihood ratio; NA: no such bound";
-constexpr const char* kDeviation = "psi: posterior standard deviation, in levels or, on a logarithmic axis, decades";
 
 /// Columns that both tables begin with, of rows with the members `attempt` and `step`.
 template <class Row>
 ColumnsOf<Row> leadingColumns(const StudyData& study, const std::string& track_label) {
     ColumnsOf<AttemptRow> of_attempt = participantSessionColumns<AttemptRow>();
-    append(of_attempt,
-           {blockColumn<AttemptRow>(),
-            {"condition", "Condition as planned, without the staircase's key", "text", &AttemptRow::condition}});
+    append(of_attempt, {blockColumn<AttemptRow>(), {ofThresholds("condition"), "text", &AttemptRow::condition}});
     ColumnsOf<Row> columns;
     append(columns, of_attempt, attemptOf<Row>);
-    append(columns, {{"staircase", "Name of the staircase", "text", [](const Row& row) { return row.step->staircase; }},
+    append(columns, {{ofThresholds("staircase"), "text", [](const Row& row) { return row.step->staircase; }},
                      {"track", track_label, "text", [](const Row& row) { return row.step->track; }}});
     appendFactors(columns, study, [](const Row& row) { return row.attempt->levels; });
     return columns;
@@ -79,8 +77,12 @@ ColumnsOf<StaircaseStepRow> stepColumns() {
          "invalidated later are in it, not in thresholds.csv",
          "number",
          &StaircaseStepRow::estimate,
-         {.formula = kEstimate}},
-        {"estimate_sd", "How unsure it is", "number", &StaircaseStepRow::estimate_sd, {.formula = kDeviation}}};
+         {.formula = ofThresholds(kThreshold).formula}},
+        {"estimate_sd",
+         "How unsure it is",
+         "number",
+         &StaircaseStepRow::estimate_sd,
+         {.formula = ofThresholds("estimate_sd").formula}}};
 }
 
 ColumnsOf<StepOfAttempt> staircaseColumns(const StudyData& study) {
@@ -187,21 +189,16 @@ ColumnsOf<Threshold> fitColumns() {
 
 ColumnsOf<Threshold> thresholdColumns(const StudyData& study) {
     ColumnsOf<Threshold> columns = leadingColumns<Threshold>(study, "Which of the tracks that take turns");
-    append(columns, {{"n_trials", "Trials that told it something and count", "integer", &Threshold::trials},
-                     {"n_reversals", "Reversals of the track by these alone", "integer", &Threshold::reversals},
-                     {"n_invalidated", "Trials that told it something and were invalidated later", "integer",
-                      &Threshold::invalidated},
-                     {kThreshold,
-                      "Threshold by the trials that count, in the key's unit",
-                      "number",
-                      &Threshold::estimate,
-                      {.formula = kEstimate}},
+    append(columns, {{ofThresholds("n_trials"), "integer", &Threshold::trials},
+                     {ofThresholds("n_reversals"), "integer", &Threshold::reversals},
+                     {ofThresholds("n_invalidated"), "integer", &Threshold::invalidated},
+                     {ofThresholds(kThreshold), "number", &Threshold::estimate},
                      {kLogThreshold,
                       "The same in decades; NA: the staircase's axis is not logarithmic",
                       "number",
                       &Threshold::decades,
                       {.formula = "log10(estimate)"}},
-                     {"estimate_sd", "How unsure it is", "number", &Threshold::deviation, {.formula = kDeviation}}});
+                     {ofThresholds("estimate_sd"), "number", &Threshold::deviation}});
     append(columns, fitColumns());
     append(columns, ColumnsOf<AttemptRow>{protocolColumn<AttemptRow>(kInFolder)}, attemptOf<Threshold>);
     return columns;

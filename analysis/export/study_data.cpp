@@ -139,23 +139,9 @@ std::string sequenceOf(const StudyData& study, const std::string& participant) {
 }
 
 std::set<std::string> countedSessions(const StudyData& study) {
-    std::set<std::string> excluded;
-    for (const store::ParticipantRow& person : study.participants)
-        if (person.status == "excluded") excluded.insert(person.participant_id);
-    std::map<std::pair<std::string, std::string>, const store::SessionRow*> latest;  // participant, protocol
-    std::set<std::pair<std::string, std::string>> whole;
     std::set<std::string> ids;
-    for (const store::SessionRow& session : study.sessions) {
-        if (excluded.count(session.participant_id) != 0) continue;
-        const std::pair who(session.participant_id, session.protocol_sha256);
-        const store::SessionRow*& best = latest[who];
-        if (!best || session.ordinal > best->ordinal) best = &session;
-        if (session.end_state != "complete") continue;
-        whole.insert(who);
-        ids.insert(session.session_id);
-    }
-    for (const auto& [who, session] : latest)
-        if (whole.count(who) == 0) ids.insert(session->session_id);
+    for (const store::SessionRow& session : study.sessions)
+        if (session.counted) ids.insert(session.session_id);
     return ids;
 }
 

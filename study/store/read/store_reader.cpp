@@ -17,6 +17,7 @@
 #include "study/store/schema/named_columns.h"
 #include "study/store/schema/open_database.h"
 #include "study/store/schema/untouched.h"
+#include "study/store/schema/view_columns.h"
 
 namespace passung::store {
 namespace {
@@ -37,7 +38,7 @@ Selection<SessionRow> sessionColumns(const Database& database) {
     using Row = SessionRow;
     return {{"s.session_id", &Row::session_id},
             {"s.participant_id", &Row::participant_id},
-            {"p.kind", &Row::kind},
+            {"pa.kind", &Row::kind},
             {"s.ordinal", &Row::ordinal},
             {"s.station", &Row::station},
             {"(SELECT json_group_array(json_extract(n.device_json, '$.name')) FROM (SELECT device_json FROM segment "
@@ -62,8 +63,9 @@ Selection<SessionRow> sessionColumns(const Database& database) {
             {"(SELECT count(*) FROM attempt a JOIN trial_plan t USING(trial_id) WHERE t.session_id=s.session_id)",
              &Row::attempts},
             {"(SELECT count(*) FROM attempt a JOIN trial_plan t USING(trial_id) WHERE t.session_id=s.session_id "
-             "AND a.valid AND p.status<>'excluded')",
-             &Row::valid_attempts}};
+             "AND a.valid AND pa.status<>'excluded')",
+             &Row::valid_attempts},
+            {countedSession(), &Row::counted}};
 }
 
 Selection<ParticipantRow> participantColumns() {
@@ -287,7 +289,7 @@ Result<std::vector<SessionRow>> StoreReader::sessions() const {
     return guarded(path_, [&] {
         return sessionColumns(*database_)
             .all(*database_,
-                 "FROM session s JOIN participant p USING(participant_id) JOIN segment g ON g.segment_id="
+                 "FROM session s JOIN participant pa USING(participant_id) JOIN segment g ON g.segment_id="
                  "(SELECT min(n.segment_id) FROM segment n WHERE n.session_id=s.session_id) "
                  "ORDER BY s.participant_id, s.ordinal");
     });

@@ -6,6 +6,7 @@
 #include "study/store/rows/exact_overlap_rows.h"
 #include "study/store/rows/presentation_rows.h"
 #include "study/store/schema/named_columns.h"
+#include "study/store/schema/view_columns.h"
 
 namespace passung::store {
 namespace {
@@ -14,6 +15,9 @@ constexpr const char* kFromAttempts =
     " FROM attempt a JOIN trial_plan t USING(trial_id) JOIN session s USING(session_id) "
     "JOIN participant pa USING(participant_id) JOIN segment g ON g.segment_id=a.segment_id "
     "JOIN condition c USING(condition_id) LEFT JOIN timing m USING(attempt_id)";
+
+/// Of the view's column of this name.
+const std::string& sqlOf(const char* column) { return viewColumn(StudyView::Trials, column).sql; }
 
 /// Makes the columns of an attempt; those of its condition's levels are read from `database`.
 Selection<AttemptRow> attemptColumns(const Database& database) {
@@ -26,11 +30,7 @@ Selection<AttemptRow> attemptColumns(const Database& database) {
              &Row::group},
             {"s.ordinal", &Row::session_ordinal},
             {"s.station", &Row::station},
-            // A mouse stands for the device that the condition names; once only its name told that.
-            {"CASE WHEN coalesce(json_extract(g.device_json, '$.stands_for_preset'), "
-             "json_extract(g.device_json, '$.name')='mouse') THEN json_extract(g.device_json, '$.name') ELSE "
-             "coalesce(json_extract(a.params_json, '$.device'), json_extract(g.device_json, '$.name')) END",
-             &Row::device},
+            {sqlOf("device"), &Row::device},
             {"t.block_index", &Row::block_index},
             {"t.block", &Row::block},
             {"t.phase", &Row::phase},
@@ -44,10 +44,10 @@ Selection<AttemptRow> attemptColumns(const Database& database) {
             {"a.start_ns", &Row::start_ns},
             {"a.end_ns", &Row::end_ns},
             {"a.outcome", &Row::outcome},
-            // Whoever is excluded counts nowhere; their rows stay as they are.
-            {"a.valid AND pa.status<>'excluded'", &Row::valid},
-            {"CASE WHEN a.valid AND pa.status='excluded' THEN 'participant excluded' ELSE a.invalid_reason END",
-             &Row::invalid_reason},
+            {sqlOf("valid"), &Row::valid},
+            {sqlOf("invalid_reason"), &Row::invalid_reason},
+            {sqlOf("not_counted_because"), &Row::not_counted_because},
+            {sqlOf("feedback_given"), &Row::feedback_given},
             {"a.params_json", &Row::params_json},
             {"a.stages_json", &Row::stages_json},
             {"a.seed", &Row::seed},
@@ -55,7 +55,7 @@ Selection<AttemptRow> attemptColumns(const Database& database) {
             {"s.protocol_sha256", &Row::protocol_sha256},
             {"g.app_version", &Row::app_version},
             {"coalesce(json_extract(a.params_json, '$.kinesthetic'), 1)", &Row::kinesthetic},
-            {"coalesce(json_extract(a.params_json, '$.timed_by'), 'program')", &Row::timed_by},
+            {sqlOf("timed_by"), &Row::timed_by},
             {"coalesce(json_extract(a.params_json, '$.secondary.stimulus'), 'none')", &Row::stimulus},
             {"(SELECT min(e.t_ns) FROM event e WHERE e.attempt_id=a.attempt_id AND e.event='trial_started')",
              &Row::trial_ns},

@@ -4,6 +4,7 @@
 
 #include "study/store/rows/event_rows.h"
 #include "study/store/schema/named_columns.h"
+#include "study/store/schema/view_columns.h"
 
 namespace passung::store {
 namespace {

@@ -14,6 +14,7 @@
 #include "study/store/rows/slots.h"
 #include "study/store/schema/named_columns.h"
 #include "study/store/schema/revisions.h"
+#include "study/store/schema/study_views.h"
 
 namespace passung::store {
 namespace {
@@ -145,6 +146,7 @@ std::string importPlan(const Database& database, const plan::StudyPlan& plan, co
         requireQuestionnaires(database, sha256, plan);
         storeSeed(database, sha256, seed);
         insertMeasures(database, plan::mostHands(plan));
+        makeStudyViews(database);  // in another order of measures, where a program knows more of them
         if (keep) transaction.commit();
         return sha256;
     }
@@ -171,6 +173,7 @@ std::string importPlan(const Database& database, const plan::StudyPlan& plan, co
     if (!choice.trials_only) insertConsentClauses(database, sha256, plan.consent);
     while (slotCount(database, sha256) < plan.participants)
         insertSlots(database, sha256, plan::participantKindName(plan::ParticipantKind::Real));
+    makeStudyViews(database);
     if (keep) transaction.commit();
     return sha256;
 }

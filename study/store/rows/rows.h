@@ -204,6 +204,7 @@ struct SessionRow {
     std::int64_t planned_trials = 0;
     std::int64_t attempts = 0;
     std::int64_t valid_attempts = 0;
+    bool counted = false;  // means are taken over it
 };
 
 /// `*_us` are empty where time was not measured.
@@ -240,6 +241,7 @@ struct AttemptRow {
     std::string outcome;  // also "running" and "crashed"
     bool valid = false;
     std::optional<std::string> invalid_reason;
+    std::optional<std::string> not_counted_because;  // nothing: means count it
     std::string params_json;
     std::string stages_json;
     std::uint64_t seed = 0;
@@ -262,6 +264,7 @@ struct AttemptRow {
     std::vector<session::ContactEnergy> contact_energy;  // none of attempts from before schema revision 6
     std::optional<session::Presentation> presentation;   // none: no window showed it
     std::optional<session::Delivered> delivered;         // of its feedback; none: not known
+    std::optional<std::string> feedback_given;           // the same in words
 
     /// A main-phase attempt that counts in means: it ended by its own rules and nothing spoilt it.
     bool counts() const {

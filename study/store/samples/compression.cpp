@@ -6,12 +6,12 @@
 
 namespace passung::store {
 
-/// By runs of equal bytes alone: of samples in planes these are nearly all that is to be found, in two thirds of the
-/// time of the fastest search, and an eighth larger.
+/// Of samples in planes of differences the next level of zlib is 1 % smaller in half as much time again, the one before
+/// 5 % larger.
 std::vector<std::byte> deflated(std::span<const std::byte> bytes) {
-    constexpr int kLevel = 1, kLargestWindow = 15, kUsualMemory = 8;
+    constexpr int kLevel = 4, kLargestWindow = 15, kUsualMemory = 8;
     z_stream stream{};
-    if (deflateInit2(&stream, kLevel, Z_DEFLATED, kLargestWindow, kUsualMemory, Z_RLE) != Z_OK)
+    if (deflateInit2(&stream, kLevel, Z_DEFLATED, kLargestWindow, kUsualMemory, Z_DEFAULT_STRATEGY) != Z_OK)
         throw std::runtime_error("zlib cannot pack the samples");
     std::vector<std::byte> packed(deflateBound(&stream, static_cast<uLong>(bytes.size())));
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data()));  // zlib only reads it

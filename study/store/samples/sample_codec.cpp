@@ -5,10 +5,12 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "core/base/assert.h"
 #include "core/base/json.h"
 #include "study/store/samples/compression.h"
+#include "study/store/samples/planes.h"
 
 namespace passung::store {
 namespace {
@@ -207,26 +209,18 @@ Chunk encode(const Layout& layout, std::span<const TickRecord> records) {
     return chunk;
 }
 
-constexpr std::string_view kPacked = "columns-v2";
+constexpr std::string_view kPlanes = "columns-v2", kDifferences = "columns-v3";
 constexpr std::size_t kSizeBytes = 4;  // before the deflated bytes: how many they become, little-endian
 
-/// Moves bytes between rows and planes: plane b of a column of w-byte values holds byte b of each, from the first row
-/// to the last. Neighbouring ticks share their high bytes, which deflate then finds side by side.
-template <class Move>
-void forEachPlanedByte(const Layout& layout, std::size_t columns, std::size_t rows, Move move) {
-    std::size_t start = 0;
-    for (const Channel& channel : std::span(layout.channels).first(columns)) {
-        const std::size_t width = channel.width();
-        for (std::size_t byte = 0; byte < width; ++byte)
-            for (std::size_t row = 0; row < rows; ++row) move(start + row * width + byte, start + byte * rows + row);
-        start += rows * width;
-    }
+std::vector<std::size_t> widthsOf(const Layout& layout, std::size_t columns) {
+    std::vector<std::size_t> widths;
+    for (const Channel& channel : std::span(layout.channels).first(columns)) widths.push_back(channel.width());
+    return widths;
 }
 
 Chunk pack(const Layout& layout, const Chunk& chunk) {
-    std::vector<std::byte> planes(chunk.data.size());
-    forEachPlanedByte(layout, layout.columnsOf(chunk), static_cast<std::size_t>(chunk.count),
-                      [&](std::size_t row, std::size_t plane) { planes[plane] = chunk.data[row]; });
+    const auto widths = widthsOf(layout, layout.columnsOf(chunk));
+    const auto planes = toDifferencePlanes(chunk.data, widths, static_cast<std::size_t>(chunk.count));
     Chunk packed{chunk.first_tick, chunk.count, 0, deflated(planes)};
     std::array<std::byte, kSizeBytes> size;
     for (std::size_t i = 0; i < kSizeBytes; ++i) size[i] = static_cast<std::byte>(planes.size() >> (8 * i) & 0xff);
@@ -239,21 +233,33 @@ Error chunkError(const Chunk& chunk, const char* what) {
     return {.message = "chunk of samples from tick " + std::to_string(chunk.first_tick) + ": " + what};
 }
 
+/// The columns of planes of as many columns as make that many bytes; nothing if no number of them does.
+std::optional<std::vector<std::byte>> columnsFrom(const Layout& layout, std::span<const std::byte> bytes,
+                                                  std::size_t rows, bool differences) {
+    for (std::size_t n = layout.channels.size(); n + layout.later_columns >= layout.channels.size(); --n) {
+        const auto widths = widthsOf(layout, n);
+        const std::size_t size = std::accumulate(widths.begin(), widths.end(), std::size_t{0}) * rows;
+        if (differences && bytes.size() == n + size) return fromDifferencePlanes(bytes, widths, rows);
+        if (!differences && bytes.size() == size) return fromPlanes(bytes, widths, rows);
+    }
+    return std::nullopt;
+}
+
 Result<Chunk> unpack(const Layout& layout, const Chunk& stored, std::string_view encoding) {
-    if (!encoding.starts_with(kPacked)) return stored;
+    const bool differences = encoding.starts_with(kDifferences);
+    if (!differences && !encoding.starts_with(kPlanes)) return stored;
     if (crc32(stored.data) != stored.crc32) return chunkError(stored, "checksum does not match, the data is damaged");
-    if (stored.data.size() < kSizeBytes) return chunkError(stored, "its size does not fit its number of ticks");
+    const auto misfit = chunkError(stored, "its size does not fit its number of ticks");
+    if (stored.data.size() < kSizeBytes || stored.count < 1 || stored.count > static_cast<std::int64_t>(kChunkTicks))
+        return misfit;
     std::size_t size = 0;
     for (std::size_t i = 0; i < kSizeBytes; ++i) size |= std::to_integer<std::size_t>(stored.data[i]) << (8 * i);
-    Chunk chunk{stored.first_tick, stored.count, 0, {}};
-    if (size > kChunkTicks * layout.bytes_per_tick)
-        return chunkError(stored, "its size does not fit its number of ticks");
-    const auto planes = inflated(std::span(stored.data).subspan(kSizeBytes), size);
-    chunk.data.resize(size);
-    const std::size_t columns = layout.columnsOf(chunk);
-    if (planes.size() != size || columns == 0) return chunkError(stored, "its size does not fit its number of ticks");
-    forEachPlanedByte(layout, columns, static_cast<std::size_t>(chunk.count),
-                      [&](std::size_t row, std::size_t plane) { chunk.data[row] = planes[plane]; });
+    if (size > kChunkTicks * layout.bytes_per_tick + layout.channels.size()) return misfit;
+    const auto bytes = inflated(std::span(stored.data).subspan(kSizeBytes), size);
+    if (bytes.size() != size) return misfit;
+    auto columns = columnsFrom(layout, bytes, static_cast<std::size_t>(stored.count), differences);
+    if (!columns) return misfit;
+    Chunk chunk{stored.first_tick, stored.count, 0, *std::move(columns)};
     chunk.crc32 = crc32(chunk.data);
     return chunk;
 }
@@ -333,13 +339,14 @@ bool haveExtra(Extra extra, std::span<const TickRecord> records) {
 }
 
 std::string encodingText() {
-    return "columns-v2: one blob holds n consecutive ticks, tick number of row i = first_tick + i. Time since the "
+    return "columns-v3: one blob holds n consecutive ticks, tick number of row i = first_tick + i. Time since the "
            "attempt's tick 0 = 0.001 s * sum of the column periods over the ticks after it (in virtual time: 0.001 s * "
-           "tick); that of the chunk's first tick is t0_ns less the attempt's start_ns. The columns of channels_json "
-           "follow one another in that order, each as "
-           "n values of its type, little-endian, without padding, and each column as planes: the first byte of all n "
-           "values, then the second of all, and so on. The blob is the length of these bytes (4 bytes, little-endian), "
-           "then the bytes as a zlib stream. crc32 = CRC-32 (zlib) of the blob.";
+           "tick); that of the chunk's first tick is t0_ns less the attempt's start_ns. The blob is a length (4 bytes, "
+           "little-endian), then as many bytes as a zlib stream: first one byte for each column of channels_json, its "
+           "order; then the columns in that order, each as planes: the lowest byte of all n words, then the next of "
+           "all, and so on. A word w stands for the difference (w >> 1) xor -(w & 1). Sums of a column's differences "
+           "from the first on, modulo 2^32 or 2^64, taken as often as its order says, are the bits of its n values, "
+           "little-endian. crc32 = CRC-32 (zlib) of the blob.";
 }
 
 std::string channelsJson(const std::vector<Channel>& channels) {

@@ -70,13 +70,13 @@ Chunk encodeTicks(std::span<const TickRecord> records);
 Chunk encodeTiming(std::span<const TickRecord> records);
 Chunk encodeExtra(Extra extra, std::span<const TickRecord> records);
 
-/// The chunk as it is stored: its bytes in planes and deflated, with a checksum of that.
+/// The chunk as it is stored: its differences in planes (planes.h) and deflated, with a checksum of that.
 Chunk packTicks(const Chunk& chunk);
 Chunk packTiming(const Chunk& chunk);
 Chunk packExtra(Extra extra, const Chunk& chunk);
 
-/// Undoes pack*(). `encoding` is that of its stream: chunks from before columns-v2 are stored as they are. Fails on a
-/// wrong checksum and on bytes that are no such chunk.
+/// Undoes pack*(). `encoding` is that of its stream: those of columns-v2 are planes of the values,
+/// from before that stored as they are. Fails on a wrong checksum and on bytes that are no such chunk.
 Result<Chunk> unpackTicks(const Chunk& stored, std::string_view encoding);
 Result<Chunk> unpackTiming(const Chunk& stored, std::string_view encoding);
 Result<Chunk> unpackExtra(Extra extra, const Chunk& stored, std::string_view encoding);

@@ -5,6 +5,7 @@
 #include "study/store/schema/first_schema.h"
 #include "study/store/schema/named_columns.h"
 #include "study/store/schema/person_identity.h"
+#include "study/store/schema/study_views.h"
 
 namespace passung::store {
 namespace {
@@ -264,6 +265,11 @@ ALTER TABLE assembly_step ADD COLUMN free_path_m REAL CHECK(free_path_m > 0);
 ALTER TABLE assembly_step ADD COLUMN hints INTEGER NOT NULL DEFAULT 0 CHECK(hints >= 0);
 )sql";
 
+constexpr const char* kRevision24 = R"sql(
+-- Views v_trials, v_cells, v_scores, v_events, v_thresholds and column_doc, made of the study's factors and measures
+-- (study_views.h). Samples are packed by columns-v3 of a stream's encoding.
+)sql";
+
 const std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kFirstSchema, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -301,6 +307,8 @@ const std::array kRevisions = {
     // A reader from before takes the longer chunks for damage.
     Revision{23, "What inertia and keeping apart added to the wrench; free paths of an assembly's steps, and hints",
              kRevision23, 23},
+    // A reader from before cannot unpack the samples.
+    Revision{24, "Views for people, samples in half the room", kRevision24, 24, makeStudyViews},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

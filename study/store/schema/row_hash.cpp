@@ -35,8 +35,10 @@ std::vector<std::string> namingColumns(const Database& database, const SessionTa
     return names;
 }
 
+/// By the statement that made the table: SQLite's list of tables would compile every view.
 bool hasRowId(const Database& database, const SessionTable& table) {
-    return database.integer("SELECT wr FROM pragma_table_list WHERE schema='main' AND name='" + table.name + "'") == 0;
+    return database.integer("SELECT sql LIKE '%WITHOUT ROWID' FROM main.sqlite_schema WHERE type='table' AND name='" +
+                            table.name + "'") == 0;
 }
 
 /// Reads rows of one table.

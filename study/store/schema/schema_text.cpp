@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "study/store/schema/revisions.h"
+#include "study/store/schema/study_views.h"
 
 namespace passung::store {
 namespace {
@@ -115,6 +116,30 @@ std::optional<std::int64_t> wrongNumber(const std::vector<std::int64_t>& said) {
     return std::nullopt;
 }
 
+/// The views as they should be; none where what they follow from is damaged itself.
+std::vector<StudyViewText> viewTexts(const Database& database) {
+    try {
+        return studyViewTexts(database);
+    } catch (const SqliteError&) {
+        return {};
+    }
+}
+
+/// Views whose name or statement is not as it was written. They are each study's own, and tell it themselves.
+std::vector<SchemaFault> viewFaults(const Database& database, const std::vector<SchemaRow>& here) {
+    std::vector<SchemaFault> faults;
+    for (const SchemaRow& row : here) {
+        const std::string name = markedName(row.sql).value_or(isStudyView(row.name) ? row.name : "");
+        const bool own_table = row.type == "table" && !markedName(row.sql);
+        if (name.empty() || own_table) continue;
+        if (row.type == "view" && row.name == name && row.table == name && isAsWritten({name, row.sql})) continue;
+        faults.push_back({row.rowid, {0, "view", name, name, {}}});
+        for (const StudyViewText& view : viewTexts(database))
+            if (view.name == name) faults.back().written.sql = view.sql;
+    }
+    return faults;
+}
+
 /// What a file of one revision would have to be explained by.
 struct Verdict {
     std::vector<SchemaFault> faults;
@@ -151,6 +176,7 @@ Finding findFaults(const Database& database) {
     for (int number = schemaNumber(); number > 0 && best.unexplained() > 1; --number)
         if (Verdict verdict = judge(here, newest, number); verdict.unexplained() < best.unexplained())
             best = std::move(verdict);
+    for (SchemaFault& fault : viewFaults(database, here)) best.faults.push_back(std::move(fault));
     return {std::move(best.faults), wrong};
 }
 
@@ -162,6 +188,10 @@ std::vector<std::string> titlesOf(const Finding& finding) {
 }
 
 void mend(const Database& database, const SchemaFault& fault) {
+    if (fault.written.type == "view" && fault.written.sql.empty()) {
+        database.prepare("DELETE FROM main.sqlite_schema WHERE rowid=?").bind(*fault.rowid).run();
+        return;
+    }
     database.prepare("UPDATE main.sqlite_schema SET type=?2, name=?3, tbl_name=?4, sql=?5 WHERE rowid=?1")
         .bind(*fault.rowid, fault.written.type, fault.written.name, fault.written.table, nullIfEmpty(fault.written.sql))
         .run();

@@ -10,6 +10,7 @@
 #include "study/store/schema/private_files.h"
 #include "study/store/schema/process_lock.h"
 #include "study/store/schema/session_tables.h"
+#include "study/store/schema/study_views.h"
 #include "study/store/schema/untouched.h"
 #include "study/store/schema/workshop.h"
 #include "study/store/transfer/heal.h"
@@ -90,6 +91,7 @@ private:
             for (std::string& who : mergePlaces(database_)) report_.moved_places.push_back(std::move(who));
         });
         part("hashes of what is new", [&] { sealNewRows(database_); });
+        part("the views", [&] { makeStudyViews(database_); });
     }
 
     /// Where a source is taken as far as it can be read, what cannot be read is told and left out. Each part is a

@@ -17,6 +17,7 @@
 #include "study/store/schema/revisions.h"
 #include "study/store/schema/schema_text.h"
 #include "study/store/schema/session_tables.h"
+#include "study/store/schema/study_views.h"
 #include "study/store/schema/untouched.h"
 #include "study/store/schema/workshop.h"
 #include "study/store/transfer/heal.h"
@@ -119,6 +120,7 @@ void heal(const Database& database, const std::string& source, std::vector<std::
         while (both.step()) ids.push_back(both.text(0));
         for (const std::string& id : ids) add(healer.healSession(id));
         rebuildIndices(database);
+        makeStudyViews(database);
         transaction.commit();
     }
     database.execute(std::string("DETACH ") + kFrom);

@@ -5,9 +5,11 @@
 #include <array>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 
 #include "study/store/samples/compression.h"
+#include "study/store/samples/planes.h"
 #include "tests/study/store/fake_study.h"
 
 namespace passung::store {
@@ -211,6 +213,60 @@ TEST(SampleCodec, PackedChunksComeBackAndNeighboursThatDifferLittleTakeLittle) {
     const Chunk timing = encodeTiming(still);
     EXPECT_EQ(unpackTiming(packTiming(timing), encodingText())->data, timing.data);
     EXPECT_EQ(unpackTicks(raw, "columns-v1: as it is")->data, raw.data) << "files from before";
+}
+
+std::vector<std::byte> bytesOfHex(const std::string& hex) {
+    std::vector<std::byte> bytes;
+    for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
+        bytes.push_back(static_cast<std::byte>(std::stoi(hex.substr(i, 2), nullptr, 16)));
+    return bytes;
+}
+
+TEST(SampleCodec, ReadsAChunkOfAFileFromBeforeDifferencesWereStored) {
+    // Truth: independent program (Python 3.11, zlib and struct, by what the stream's own encoding said of columns-v2)
+    // on a chunk that the program of revision 23 wrote; the columns as it read them.
+    std::ifstream file(PASSUNG_SOURCE_DIR "/tests/data/samples/columns_v2.txt");
+    Chunk stored;
+    std::string blob, columns;
+    file >> stored.first_tick >> stored.count >> stored.crc32 >> blob >> columns;
+    stored.data = bytesOfHex(blob);
+    ASSERT_GT(stored.data.size(), 500u);
+    const auto read = unpackTicks(stored, "columns-v2: one blob holds n consecutive ticks ...");
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->data, bytesOfHex(columns));
+    EXPECT_FALSE(unpackTicks(stored, encodingText())) << "no planes of differences";
+}
+
+TEST(SampleCodec, DifferencesAreTakenAsOftenAsLeavesLeast) {
+    // Truth: closed form: of a constant once, of a line twice, of a parabola three times nothing but the beginning is
+    // left, folded so that 0, -1, 1, -2 are 0, 1, 2, 3; of alternating bits none are taken.
+    const std::size_t rows = 6;
+    const auto columnOf = [&](auto value) {
+        std::vector<std::byte> bytes;
+        for (std::uint32_t i = 0; i < rows; ++i) {
+            const std::uint32_t word = value(i);
+            for (int b = 0; b < 4; ++b) bytes.push_back(static_cast<std::byte>(word >> (8 * b) & 0xff));
+        }
+        return bytes;
+    };
+    const std::array<std::size_t, 1> width{4};
+    struct Case {
+        std::vector<std::byte> column;
+        int order;
+        std::vector<int> first_plane;  // lowest bytes
+    };
+    for (const Case& c : {Case{columnOf([](std::uint32_t) { return 7u; }), 1, {14, 0, 0, 0, 0, 0}},
+                          Case{columnOf([](std::uint32_t i) { return 0u - 3u * i; }), 2, {0, 5, 0, 0, 0, 0}},
+                          Case{columnOf([](std::uint32_t i) { return i * i; }), 3, {0, 2, 2, 0, 0, 0}},
+                          Case{columnOf([](std::uint32_t i) { return i % 2; }), 0, {0, 2, 0, 2, 0, 2}}}) {
+        const auto planes = toDifferencePlanes(c.column, width, rows);
+        ASSERT_EQ(planes.size(), 1 + c.column.size());
+        EXPECT_EQ(std::to_integer<int>(planes[0]), c.order);
+        for (std::size_t row = 0; row < rows; ++row)
+            EXPECT_EQ(std::to_integer<int>(planes[1 + row]), c.first_plane[row]) << c.order << " " << row;
+        for (std::size_t i = 1 + rows; i < planes.size(); ++i) EXPECT_EQ(planes[i], std::byte{0});
+        EXPECT_EQ(fromDifferencePlanes(planes, width, rows), c.column);
+    }
 }
 
 TEST(SampleCodec, APackedChunkWithAnyFlippedBitOrWrongLengthIsRefused) {

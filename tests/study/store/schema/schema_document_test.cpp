@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "study/store/schema/revisions.h"
+#include "study/store/schema/view_columns.h"
 
 namespace passung::store {
 namespace {
@@ -155,6 +156,26 @@ std::string tableText(const std::string& name, const std::string& sql, const Rem
     return text + rules;
 }
 
+std::string viewsText() {
+    std::string text =
+        "\n# Views\n\nFor people who query the database: the columns of an export's tables, by the same names, and of "
+        "v_cells a row for each measure. In `v_trials`, `v_cells` and `v_thresholds` a column for each factor stands "
+        "before the one that is marked f, in `v_trials` one for each measure before m. `column_doc` tells the same, "
+        "and "
+        "of factors and measures, in the database. NA is NULL. Where a number needs more than SQL, the view is NULL: "
+        "`start_tick` and `end_tick` where cycles were missed, estimates of `v_thresholds` where an answer was "
+        "invalidated later; fits of thresholds, labels and classes of scores are in exports alone.\n";
+    for (const StudyView which : kStudyViews) {
+        const ViewText& view = textOf(which);
+        text += "\n## " + view.name + "\n\n| column | unit | meaning | formula |\n| --- | --- | --- | --- |\n";
+        for (const ViewColumn& column : view.columns)
+            text += "| " + std::string(column.name == view.factors_before ? "f " : "") +
+                    (column.name == view.measures_before ? "m " : "") + "`" + column.name + "` | " + column.unit +
+                    " | " + column.label + " | " + column.formula + " |\n";
+    }
+    return text;
+}
+
 std::string schemaDocument() {
     const Database database(":memory:", OpenMode::ReadWrite);
     upgradeSchema(database, "2000-01-01T00:00:00Z");
@@ -170,7 +191,7 @@ std::string schemaDocument() {
     Statement tables = database.prepare(
         "SELECT name, sql FROM sqlite_schema WHERE type='table' AND name NOT LIKE 'sqlite_%' ORDER BY rowid");
     while (tables.step()) text += tableText(tables.text(0), tables.text(1), remarks);
-    return text;
+    return text + viewsText();
 }
 
 TEST(SchemaDocument, IsWhatTheCommittedFileSays) {

@@ -40,10 +40,11 @@ TEST(Store, NewFileHasASoundStrictSchemaOfTheCurrentRevision) {
     EXPECT_FALSE(std::filesystem::exists(path + "-wal"));
     expectSound(path);
     const Database database(path, OpenMode::ReadOnly);
-    EXPECT_EQ(rows(database,
-                   "SELECT name FROM pragma_table_list WHERE schema='main' AND NOT strict AND name NOT LIKE "
-                   "'sqlite_%'"),
-              "");
+    EXPECT_EQ(
+        rows(database,
+             "SELECT name FROM pragma_table_list WHERE schema='main' AND type='table' AND NOT strict AND name NOT LIKE "
+             "'sqlite_%'"),
+        "");
     EXPECT_EQ(database.text("PRAGMA journal_mode"), "wal");
     EXPECT_EQ(database.integer("SELECT max(revision) FROM schema_revision"), schemaNumber());
 }
