@@ -46,3 +46,5 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/passungConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/passungConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/passungConfig.cmake ${PROJECT_BINARY_DIR}/passungConfigVersion.cmake
   DESTINATION ${package_dir} COMPONENT core)
+install(FILES ${PROJECT_SOURCE_DIR}/analysis/readers/passung.R ${PROJECT_SOURCE_DIR}/analysis/readers/passung.py
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/passung/readers COMPONENT engine)

@@ -56,11 +56,15 @@ protected:
 
 TEST_P(PlannedAnalyses, KeepEveryCountedPersonInR) {
     // Truth: independent program (R 4, base: aggregate, complete.cases, aov) on the exported tables; in the report an
-    // invariant: each person who counts is in each analysis.
+    // invariant: each person who counts is in each analysis. The database's views: Python's sqlite3 and csv.
     const Ended run = runProgram(folder_.path(), {"run", study().string(), "--simulated", "4", "--db", "s.db"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     ASSERT_EQ(runProgram(folder_.path(), {"export", "s.db", "--out", "out", "--no-samples"}).exit_code, 0);
     int code = 0;
+    const std::string views = ask("python3 '" PASSUNG_SOURCE_DIR "/tests/ui/cli/database_views.py' '" +
+                                      (folder_ / "s.db") + "' '" + (folder_ / "out") + "'",
+                                  code);
+    EXPECT_EQ(code, 0) << views;
     const std::string said = askR(std::string(PASSUNG_SOURCE_DIR) + "/tests/ui/cli/planned_analyses.R '" +
                                       (folder_.path() / "out").string() + "'",
                                   code);

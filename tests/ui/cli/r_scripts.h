@@ -18,14 +18,19 @@ inline bool hasReportPackages() {
 
 constexpr const char* kNoReportPackages = "R or a package of a report is not installed (report_packages of ./dev)";
 
-/// What Rscript prints with these arguments, as a shell reads them.
-inline std::string askR(const std::string& arguments, int& code) {
-    FILE* pipe = popen(("LC_ALL=C.UTF-8 Rscript --vanilla " + arguments + " 2>&1").c_str(), "r");
+/// What a command of the shell prints.
+inline std::string ask(const std::string& command, int& code) {
+    FILE* pipe = popen((command + " 2>&1").c_str(), "r");
     std::string text;
     char buffer[4096];
     for (std::size_t n = 0; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) text.append(buffer, n);
     code = pclose(pipe);
     return text;
+}
+
+/// What Rscript prints with these arguments, as a shell reads them.
+inline std::string askR(const std::string& arguments, int& code) {
+    return ask("LC_ALL=C.UTF-8 Rscript --vanilla " + arguments, code);
 }
 
 /// Prints what a page and its results say that cannot be: tests/ui/cli/report_page.R.

@@ -1,0 +1,72 @@
+#include <gtest/gtest.h>
+
+#include "study/store/schema/sqlite.h"
+#include "tests/ui/cli/program.h"
+#include "tests/ui/cli/r_scripts.h"
+#include "tests/ui/cli/small_study.h"
+
+namespace passung::test {
+namespace {
+
+/// What a Python script of this folder prints, with these arguments.
+std::string askPython(const std::string& script, const std::string& arguments, int& code) {
+    return ask("python3 '" PASSUNG_SOURCE_DIR "/tests/ui/cli/" + script + "' " + arguments, code);
+}
+
+/// A study whose factor has the name of another column, performed by three participants: one as planned, one who is
+/// excluded later, one whose session is broken off in a trial.
+class QueriedDatabase : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string text = fairStudy();
+        const std::string factor = "name = \"chance\"";
+        text.replace(text.find(factor), factor.size(), "name = \"phase\"");
+        writeText(folder_.path() / "study.toml", text);
+        ASSERT_EQ(run({"run", "study.toml", "--db", "s.db", "--no-backup", "--simulated", "2"}), 0);
+    }
+    int run(const std::vector<std::string>& arguments) const { return runProgram(folder_.path(), arguments).exit_code; }
+    void breakOff() const {
+        Program program(folder_.path(), {"run", "study.toml", "--db", "s.db", "--no-backup", "--simulated", "50"},
+                        true);
+        EXPECT_NE(program.nextAcknowledgement(), "");
+        program.send(SIGINT);
+        EXPECT_EQ(program.wait(), 1);
+    }
+    std::string path(const std::string& name) const { return "'" + (folder_.path() / name).string() + "' "; }
+
+    TempFolder folder_;
+};
+
+TEST_F(QueriedDatabase, HasViewsThatSayWhatTheExportsTablesSay) {
+    // Truth: independent program (Python's sqlite3 and csv) that compares two paths out of the database, SQL and
+    // export; a value that is changed in one of them is found.
+    breakOff();
+    ASSERT_EQ(run({"participant", "exclude", "s.db", "S002", "--reason", "late"}), 0);
+    ASSERT_EQ(run({"export", "s.db", "--out", "out", "--no-samples"}), 0);
+    int code = 0;
+    const std::string said = askPython("database_views.py", path("s.db") + path("out"), code);
+    EXPECT_EQ(code, 0) << said;
+    const std::string trials = readText(folder_ / "out/trials.csv");
+    for (const char* word : {",factor_phase,", ",the participant is excluded,", ",aborted,"})
+        EXPECT_NE(trials.find(word), std::string::npos) << word;
+    const store::Database database(folder_ / "s.db", store::OpenMode::ReadWrite);
+    database.execute(
+        "UPDATE attempt_measure SET value_num=value_num*(1+1e-15) WHERE attempt_id=2 AND measure='time_s'");
+    EXPECT_NE(askPython("database_views.py", path("s.db") + path("out"), code).find("v_trials"), std::string::npos);
+    EXPECT_NE(code, 0);
+}
+
+TEST_F(QueriedDatabase, IsReadFromPythonAndRToTheLastBit) {
+    // Truth: independent programs (Python's float of the exported text; readers written from the stream's own words).
+    if (std::system("Rscript --vanilla -e 'library(RSQLite); library(jsonlite)' > /dev/null 2>&1") != 0)
+        GTEST_SKIP() << "R, r-cran-rsqlite or r-cran-jsonlite is not installed";
+    ASSERT_EQ(run({"export", "s.db", "--out", "out"}), 0);
+    int code = 0;
+    const std::string said =
+        askPython("database_readers.py", "'" PASSUNG_SOURCE_DIR "' " + path("s.db") + path("out") + "1 2 3", code);
+    EXPECT_EQ(code, 0) << said;
+    EXPECT_NE(said.find("compared "), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace passung::test
