@@ -109,7 +109,7 @@ Result<StudyData> readStudy(const store::StoreReader& reader) {
     findTicks(reader, study.attempts);
     std::set<std::string> taken;
     for (const Column& column : trialColumns(study)) taken.insert(column.name);  // not yet those of factors
-    if (!study.staircase_steps.empty())
+    if (!study.staircase_tracks.empty())  // by the plan, so that a name does not depend on who has been there
         for (const Table& table : {makeStaircase(study), makeThresholds(study)})
             for (const Column& column : table.columns) taken.insert(column.name);
     study.factors = mergeFactors(factors, taken);

@@ -54,6 +54,7 @@ std::vector<std::string> readMeasures(const Database& database) {
 struct StudyColumns {
     std::vector<StudyFactor> factors;
     std::vector<std::string> measures;
+    bool staircases = false;
 };
 
 std::string factorSql(const StudyFactor& factor) {
@@ -136,10 +137,10 @@ private:
             return std::any_of(text.columns.begin(), text.columns.end(),
                                [&](const ViewColumn& column) { return column.name == factor.name; });
         };
-        const bool taken =
-            has(view) || has(textOf(StudyView::Trials)) || has(textOf(StudyView::Thresholds)) ||
-            others.count(factor.name) != 0 ||
-            std::find(study_.measures.begin(), study_.measures.end(), factor.name) != study_.measures.end();
+        const bool of_staircases = has(textOf(StudyView::Thresholds)) || others.count(factor.name) != 0;
+        const auto& measures = study_.measures;
+        const bool taken = has(view) || has(textOf(StudyView::Trials)) || (study_.staircases && of_staircases) ||
+                           std::find(measures.begin(), measures.end(), factor.name) != measures.end();
         return taken ? "factor_" + factor.name : factor.name;
     }
 
@@ -162,7 +163,12 @@ void makeView(const Database& database, const StudyViewText& view) {
 }  // namespace
 
 std::vector<StudyViewText> studyViewTexts(const Database& database) {
-    const ViewMaker maker({readFactors(database), readMeasures(database)});
+    // A plan that is damaged has none, and is no reason to have no views.
+    const bool staircases =
+        database.integer(
+            "SELECT EXISTS(SELECT 1 FROM protocol_version, json_each(CASE WHEN json_valid(expanded_json) THEN "
+            "expanded_json ELSE '{}' END, '$.staircases'))") != 0;
+    const ViewMaker maker({readFactors(database), readMeasures(database), staircases});
     std::vector<StudyViewText> views;
     for (const StudyView view : kStudyViews) views.push_back({textOf(view).name, maker.viewSql(textOf(view))});
     views.push_back({kDocument, maker.documentSql()});

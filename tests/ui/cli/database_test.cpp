@@ -13,14 +13,14 @@ std::string askPython(const std::string& script, const std::string& arguments, i
     return ask("python3 '" PASSUNG_SOURCE_DIR "/tests/ui/cli/" + script + "' " + arguments, code);
 }
 
-/// A study whose factor has the name of another column, performed by three participants: one as planned, one who is
+/// A study whose factor has the name of a column of other studies, performed by three participants: one as planned, one who is
 /// excluded later, one whose session is broken off in a trial.
 class QueriedDatabase : public testing::Test {
 protected:
     void SetUp() override {
         std::string text = fairStudy();
         const std::string factor = "name = \"chance\"";
-        text.replace(text.find(factor), factor.size(), "name = \"phase\"");
+        text.replace(text.find(factor), factor.size(), "name = \"level\"");
         writeText(folder_.path() / "study.toml", text);
         ASSERT_EQ(run({"run", "study.toml", "--db", "s.db", "--no-backup", "--simulated", "2"}), 0);
     }
@@ -47,7 +47,7 @@ TEST_F(QueriedDatabase, HasViewsThatSayWhatTheExportsTablesSay) {
     const std::string said = askPython("database_views.py", path("s.db") + path("out"), code);
     EXPECT_EQ(code, 0) << said;
     const std::string trials = readText(folder_ / "out/trials.csv");
-    for (const char* word : {",factor_phase,", ",the participant is excluded,", ",aborted,"})
+    for (const char* word : {",level,", ",the participant is excluded,", ",aborted,"})
         EXPECT_NE(trials.find(word), std::string::npos) << word;
     const store::Database database(folder_ / "s.db", store::OpenMode::ReadWrite);
     database.execute(
