@@ -65,7 +65,7 @@ set(rooms
 # Headers from outside: what the path between the angle brackets looks like, the rooms that may include it, and
 # whether only their .cpp files may (so that nothing built on the room sees it).
 set(libraries
-  "Eigen    | ^Eigen/                          | *                                      | any"
+  "Eigen    | ^(unsupported/)?Eigen/           | *                                      | any"
   "fmt      | ^fmt/                            | core/base core/loop core/replay devices study analysis ui tests | any"
   "assimp   | ^assimp/                         | core/import tests                      | cpp"
   "minizip  | ^minizip/                        | core/import                            | cpp"

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "study/measures/detection.h"
+#include "study/measures/motion_measures.h"
 #include "study/measures/overlap.h"
 #include "study/measures/period_clock.h"
 #include "study/measures/tick_facts.h"
@@ -23,25 +24,18 @@ constexpr const char* kWhatDepthIs =
     "apart: an obstacle's edge between two of them reaches deeper than it says; with closed_form it is exact; with "
     "surface it is 0 at the proxy, and at the hand the largest way from the proxy to the hand along a contact's normal";
 
+constexpr const char* kSmooth =
+    "; x, q: hand position and quaternion at every period of the trial, missing ones by straight lines, through a "
+    "Butterworth low-pass of 2nd order, forward and backward, from rest on a series that goes on as its point "
+    "reflection "
+    "at both ends; bandwidth: task.motion_bandwidth_hz, 10 Hz where the protocol says nothing";
+
 double magnitude(const std::array<float, 3>& vector) { return Vec3(vector[0], vector[1], vector[2]).norm(); }
 
 double forceOf(const TickRecord& record) { return magnitude(record.force_N); }
 double torqueOf(const TickRecord& record) { return magnitude(record.torque_Nm); }
 double handDepthOf(const TickRecord& record) { return record.hand_depth_m; }
 double proxyDepthOf(const TickRecord& record) { return record.proxy_depth_m; }
-
-/// Rotation vector in world axes from `from` to `to`, the shortest way; the quaternions' lengths cancel.
-Vec3 handRotation(const TickRecord& from, const TickRecord& to) {
-    const auto quaternion = [](const TickRecord& r) {
-        const auto& q = r.hand_quaternion;
-        return Quat(q[0], q[1], q[2], q[3]);
-    };
-    const Quat step = quaternion(to) * quaternion(from).conjugate();
-    const double sine = step.vec().norm();
-    if (!(sine > 0.0)) return Vec3::Zero();
-    const double angle = 2.0 * std::atan2(sine, std::abs(step.w()));
-    return step.vec() * ((step.w() < 0.0 ? -angle : angle) / sine);
-}
 
 HandTicks cutTicks(std::span<const TickRecord> records, const TrialContext& context) {
     const auto firstFrom = [records](std::int64_t tick) {
@@ -61,9 +55,11 @@ double wayFromStart(const HandTicks& hand, const TickRecord& record) {
 Trial cutTrial(std::span<const TickRecord> records, const TrialContext& context,
                std::span<const std::span<const TickRecord>> hands) {
     const HandTicks judged = cutTicks(records, context);
-    Trial trial{context, judged.ticks, judged.points, {}, togetherAt(judged.ticks, hands), 0, {}, {}, {}};
+    Trial trial{context, judged.ticks, judged.points, {}, {}, togetherAt(judged.ticks, hands), 0, {}, {}, {}};
     for (const auto& hand : hands) trial.hands.push_back(cutTicks(hand, context));
     if (hands.empty()) trial.hands.push_back(judged);
+    for (const HandTicks& hand : trial.hands)
+        trial.motions.push_back(smoothMotion(hand.points, context.motion_bandwidth));
     PeriodClock clock(context.start_tick);
     const Pose X_TW = context.X_WT.inverse();
     const bool bore = std::holds_alternative<std::monostate>(context.form);
@@ -91,16 +87,6 @@ std::optional<std::int64_t> approachEnd(const Trial& trial) {
     return std::min(trial.touch.value_or(*trial.engagement), *trial.engagement);
 }
 
-/// Of all hands.
-template <class Quantity>
-Optional sumOverSteps(const Trial& trial, Quantity quantity) {
-    if (trial.ticks.empty()) return std::nullopt;
-    double sum = 0.0;
-    for (const HandTicks& hand : trial.hands)
-        for (std::size_t i = 1; i < hand.points.size(); ++i) sum += quantity(hand.points[i - 1], hand.points[i]);
-    return sum;
-}
-
 /// A tick counts once, whatever hands.
 template <class Quantity>
 Optional sumOverTicks(const Trial& trial, Quantity quantity) {
@@ -123,6 +109,20 @@ Optional meanInContact(const Trial& trial) {
     }
     if (count == 0) return std::nullopt;
     return sum / static_cast<double>(count);
+}
+
+/// Nearest rank.
+template <double (*quantity)(const TickRecord&)>
+Optional percentile99InContact(const Trial& trial) {
+    std::vector<double> values;
+    for (const HandTicks& hand : trial.hands)
+        for (const TickRecord& record : hand.ticks)
+            if (isContact(record)) values.push_back(quantity(record));
+    if (values.empty()) return std::nullopt;
+    const std::size_t rank = (99 * values.size() + 99) / 100;
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank - 1);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
 }
 
 template <double (*quantity)(const TickRecord&)>
@@ -204,32 +204,41 @@ Optional insertionDepth(const Trial& trial) {
     return tipDepthInBore(trial.points.back(), X_TW, trial.context.clearance).value_or(0.0);
 }
 
-Optional pathLength(const Trial& trial) {
-    return sumOverSteps(trial, [](const TickRecord& from, const TickRecord& to) {
-        return (handPosition(to) - handPosition(from)).norm();
-    });
-}
-
-Optional rotationPath(const Trial& trial) {
-    return sumOverSteps(trial,
-                        [](const TickRecord& from, const TickRecord& to) { return handRotation(from, to).norm(); });
-}
-
 Optional contactOnsets(const Trial& trial) {
-    bool before = false;
-    return sumOverTicks(trial, [&before](const TickOfHands& tick) {
-        const bool onset = tick.contact && !before;
-        before = tick.contact;
-        return onset ? 1.0 : 0.0;
-    });
+    constexpr std::int64_t kLeastPause = 20;  // [periods]
+    if (trial.ticks.empty()) return std::nullopt;
+    PeriodClock clock(trial.context.start_tick);
+    std::optional<std::int64_t> last;  // period in contact
+    double onsets = 0.0;
+    for (std::size_t i = 0; i < trial.ticks.size(); ++i) {
+        const std::int64_t time = clock.at(trial.ticks[i]);
+        if (!trial.together[i].contact) continue;
+        if (!last || time - *last > kLeastPause) onsets += 1.0;
+        last = time;
+    }
+    return onsets;
 }
 
-Optional contactTime(const Trial& trial) {
+/// Periods of the contact ticks that count.
+template <class Counts>
+Optional secondsInContact(const Trial& trial, Counts counts) {
     if (trial.ticks.empty()) return std::nullopt;
     double periods = 0.0;
     for (std::size_t i = 0; i < trial.ticks.size(); ++i)
-        if (trial.together[i].contact) periods += trial.lengthOf(i);
+        if (trial.together[i].contact && counts(trial.ticks[i])) periods += trial.lengthOf(i);
     return periods / kPeriodsPerSecond;
+}
+
+Optional contactTime(const Trial& trial) {
+    return secondsInContact(trial, [](const TickRecord&) { return true; });
+}
+
+Optional contactTimeOutside(const Trial& trial) {
+    if (!std::holds_alternative<std::monostate>(trial.context.form)) return std::nullopt;
+    const Pose X_TW = trial.context.X_WT.inverse();
+    return secondsInContact(trial, [&](const TickRecord& record) {
+        return !tipDepthInBore(record, X_TW, trial.context.clearance).has_value();
+    });
 }
 
 Optional impulse(const Trial& trial) {
@@ -239,14 +248,6 @@ Optional impulse(const Trial& trial) {
         for (std::size_t i = 0; i < hand.ticks.size(); ++i)
             sum += forceOf(hand.ticks[i]) * kTickSeconds * hand.lengthOf(i);
     return sum;
-}
-
-Optional work(const Trial& trial) {
-    return sumOverSteps(trial, [](const TickRecord& from, const TickRecord& to) {
-        const Vec3 force(from.force_N[0], from.force_N[1], from.force_N[2]);
-        const Vec3 torque(from.torque_Nm[0], from.torque_Nm[1], from.torque_Nm[2]);
-        return -force.dot(handPosition(to) - handPosition(from)) - torque.dot(handRotation(from, to));
-    });
 }
 
 Optional saturatedShare(const Trial& trial) {
@@ -326,36 +327,80 @@ std::vector<Measure> commonMeasures() {
           2},
          insertionDepth},
         {{"path_length_m", "Path length of the hand", "m",
-          "sum of |x(k+1) - x(k)| of the hand position over the trial ticks k"},
+          std::string("sum of |x(k+1) - x(k)| over the periods k") + kSmooth, 2},
          pathLength},
+        {{"straight_path_ratio", "Path length over the straight distance", "1",
+          std::string("path_length_m / |x(end) - x(start)|") + kSmooth},
+         straightPathRatio},
         {{"rotation_path_rad", "Rotation path of the hand", "rad",
-          "sum over the trial ticks k of the angle between the hand quaternions of k and k+1, each <= pi"},
+          std::string("sum over the periods k of the angle between the quaternions q(k) and q(k+1), each <= pi") +
+              kSmooth,
+          2},
          rotationPath},
+        {{"spectral_arc_length", "Smoothness: spectral arc length (SPARC)", "1",
+          std::string(
+              "minus the length of the curve A(f)/A(0) over f, width of its band 1, A the amplitude spectrum of "
+              "the speed |x(k+1) - x(k)| / 1 ms, padded with zeros to 16 times the next power of two; the band "
+              "ends at the last frequency up to 10 Hz with A >= 0.05 A(0) (Balasubramanian et al. 2015); -1.40 "
+              "of a reach of least jerk in 1 s, less: less smooth; empty without motion") +
+              kSmooth},
+         spectralArcLength},
+        {{"log_dimensionless_jerk", "Smoothness: log dimensionless jerk", "1",
+          std::string("-ln(T^3 J / v^2), T the trial time, v the largest speed, J the sum over the periods of "
+                      "|third difference of x|^2 / (1 ms)^5 (Hogan and Sternad 2009); -5.32 of a reach of least jerk, "
+                      "less: less smooth; empty where J < 20 x 102.5 x B^7 / s^6 x T x V, B: the bandwidth / 1 Hz, V "
+                      "the mean of |x - recorded position|^2: then steps of the sensor may be more than a twentieth "
+                      "of it. Of a reach of least jerk over 0.1 m in 1 s that is with steps above 65 um") +
+              kSmooth},
+         logDimensionlessJerk},
         {{"contact_onsets", "Contact onsets", "1",
-          "number of contact ticks whose preceding trial tick is no contact tick; contact at the start tick counts; no "
-          "minimum pause"},
+          "number of contact ticks with no contact tick in the 20 ms before; contact at the start tick counts; time: "
+          "as "
+          "for the trial time",
+          2},
          contactOnsets},
         {{"contact_time_s", "Contact time", "s",
           "sum over the contact ticks k of periods(k+1) x 1 ms, 1 ms where tick k+1 was not recorded", 2},
          contactTime},
+        {{"contact_time_outside_s", "Contact time outside the hole", "s",
+          "as contact_time_s, over the contact ticks whose tip depth is not in the bore; tip depth: as for the "
+          "approach "
+          "time"},
+         contactTimeOutside},
         {{"mean_force_N", "Mean force", "N", "mean of |force| over the contact ticks; empty without contact"},
          meanInContact<forceOf>},
         {{"peak_force_N", "Peak force", "N", "largest |force| over the trial ticks"}, largest<forceOf>},
+        {{"p99_force_N", "Force, 99th percentile", "N",
+          "99th percentile, by nearest rank, of |force| over the contact ticks; empty without contact"},
+         percentile99InContact<forceOf>},
         {{"mean_torque_Nm", "Mean torque", "N m", "mean of |torque| over the contact ticks; empty without contact"},
          meanInContact<torqueOf>},
         {{"peak_torque_Nm", "Peak torque", "N m", "largest |torque| over the trial ticks"}, largest<torqueOf>},
+        {{"p99_torque_Nm", "Torque, 99th percentile", "N m",
+          "99th percentile, by nearest rank, of |torque| over the contact ticks; empty without contact"},
+         percentile99InContact<torqueOf>},
         {{"mean_hand_depth_m", "Mean depth at the hand's pose", "m",
           std::string("mean of hand_depth_m over the contact ticks; empty without contact") + kWhatDepthIs},
          meanInContact<handDepthOf>},
         {{"max_hand_depth_m", "Largest depth at the hand's pose", "m",
           std::string("largest hand_depth_m over the trial ticks") + kWhatDepthIs},
          largest<handDepthOf>},
+        {{"p99_hand_depth_m", "Depth at the hand's pose, 99th percentile", "m",
+          std::string(
+              "99th percentile, by nearest rank, of hand_depth_m over the contact ticks; empty without contact") +
+              kWhatDepthIs},
+         percentile99InContact<handDepthOf>},
         {{"mean_proxy_depth_m", "Mean depth at the proxy's pose", "m",
           std::string("mean of proxy_depth_m over the contact ticks; empty without contact") + kWhatDepthIs},
          meanInContact<proxyDepthOf>},
         {{"max_proxy_depth_m", "Largest depth at the proxy's pose", "m",
           std::string("largest proxy_depth_m over the trial ticks") + kWhatDepthIs},
          largest<proxyDepthOf>},
+        {{"p99_proxy_depth_m", "Depth at the proxy's pose, 99th percentile", "m",
+          std::string(
+              "99th percentile, by nearest rank, of proxy_depth_m over the contact ticks; empty without contact") +
+              kWhatDepthIs},
+         percentile99InContact<proxyDepthOf>},
         {{"min_proxy_gap_m", "Least proven gap at the proxy's pose", "m",
           "least proxy_gap_m over the trial ticks; empty where contact.geometry proves no gap (field)"},
          leastProxyGap},
@@ -374,8 +419,11 @@ std::vector<Measure> commonMeasures() {
           "sum over the trial ticks k of |force(k)| x periods(k+1) x 1 ms, 1 ms where tick k+1 was not recorded", 2},
          impulse},
         {{"work_J", "Work of the hand", "J",
-          "-sum over the trial ticks k of force(k).(x(k+1) - x(k)) + torque(k).theta(k), x the hand position and theta "
-          "its rotation vector from k to k+1 in world axes; positive: the hand put energy into the scene"},
+          std::string("-sum over the trial ticks k of force(k).(x(k+1) - x(k)) + torque(k).theta(k), theta the "
+                      "rotation vector from q(k) to q(k+1) in world axes; positive: the hand put energy into the "
+                      "scene") +
+              kSmooth,
+          2},
          work},
         {{"saturated_share", "Share of ticks at the force limit", "1",
           "trial ticks with status bit 4 (force or torque limited) / trial ticks"},
@@ -396,6 +444,7 @@ const char* ofHands(std::string_view name) {
     constexpr const char* kSum = "the sum over the hands, each in the world";
     constexpr const char* kLargest = "the largest over the hands";
     constexpr const char* kMean = "the mean over the contact ticks of each hand, all together";
+    constexpr const char* kAllContacts = "over the contact ticks of each hand, all together";
     constexpr const char* kAny = "a tick counts once if it counts for any hand";
     static const std::map<std::string_view, const char*> all = {
         {"completion_time_s",
@@ -404,9 +453,17 @@ const char* ofHands(std::string_view name) {
         {"approach_time_s", "a contact tick is one of any hand"},
         {"search_time_s", "a contact tick is one of any hand"},
         {"path_length_m", kSum},
+        {"straight_path_ratio", "path_length_m / the sum over the hands of |x(end) - x(start)|, each in the world"},
+        {"spectral_arc_length", "the mean over the hands that move"},
+        {"log_dimensionless_jerk", "the mean over the hands; empty where it is of one of them"},
         {"rotation_path_rad", kSum},
         {"contact_onsets", "a contact tick is one of any hand"},
         {"contact_time_s", "a contact tick is one of any hand"},
+        {"contact_time_outside_s", "a contact tick is one of any hand"},
+        {"p99_force_N", kAllContacts},
+        {"p99_torque_Nm", kAllContacts},
+        {"p99_hand_depth_m", kAllContacts},
+        {"p99_proxy_depth_m", kAllContacts},
         {"mean_force_N", kMean},
         {"peak_force_N", kLargest},
         {"mean_torque_Nm", kMean},

@@ -97,6 +97,7 @@ struct TrialContext {
     double leave_radius = 0.020;      // [m]
     double engagement_depth = 0.001;  // [m]
     double clearance = 0.0;           // [m] radial, of the held peg in the target's bore
+    double motion_bandwidth = 10.0;   // [Hz] of what counts as the hand's motion (smooth_motion.h), > 0
     std::variant<std::monostate, PassageFacts, ContourFacts, PlacementFacts, PairFacts, AssemblyFacts>
         form;             // first: peg in hole
     bool watched = true;  // false: real parts, which no device feels; only times and outcome are known

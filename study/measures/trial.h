@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "study/measures/measures.h"
+#include "study/measures/smooth_motion.h"
 #include "study/measures/tick_of_hands.h"
 
 namespace passung::measures {
@@ -34,6 +35,7 @@ struct Trial {
     std::span<const TickRecord> ticks;       // HandTicks::ticks of the first hand, as the trial is judged
     std::span<const TickRecord> points;      // HandTicks::points
     std::vector<HandTicks> hands;            // all of them, in the world; of one hand the two above
+    std::vector<SmoothMotion> motions;       // of each of `hands`, of its points
     std::vector<TickOfHands> together;       // of each of `ticks`
     std::int64_t end = 0;                    // time of the end tick
     std::optional<std::int64_t> leave;       // of any hand

@@ -75,9 +75,10 @@ struct AssemblyTask {
 
 /// What a trial asks for; `form` says the type of the trial.
 struct Task {
-    std::string target;           // name of the part that it is about; empty for free_placement
-    double timeout = 30.0;        // [s] from the start; of a pair: how long it takes at most
-    double leave_radius = 0.020;  // [m] the trial's clock starts when the part leaves this sphere about its start
+    std::string target;              // name of the part that it is about; empty for free_placement
+    double timeout = 30.0;           // [s] from the start; of a pair: how long it takes at most
+    double motion_bandwidth = 10.0;  // [Hz] of the hand's motion, as measures take it
+    double leave_radius = 0.020;     // [m] the trial's clock starts when the part leaves this sphere about its start
     std::variant<PegInHoleTask, NarrowPassageTask, ContourFollowingTask, FreePlacementTask, DiscriminationPairTask,
                  AssemblyTask>
         form;

@@ -13,6 +13,7 @@ inline constexpr Range kPositive{.low = 0, .low_excluded = true};
 inline constexpr Range kTimeout{.low = 0, .high = 3600, .low_excluded = true};
 inline constexpr std::array kTaskKeys{
     Key{"task", "type", KeyType::Choice, {}, "peg_in_hole|narrow_passage|contour_following|free_placement|discrimination_pair|assembly", "!", "Kind of trial; its own keys follow."},
+    Key{"task", "motion_bandwidth_hz", KeyType::Number, {.low = 1, .high = 100}, "", "10", "Bandwidth of what measures take for the hand's motion: its path, rotation, work and smoothness are of a low-pass, for steps of an encoder are no way. -3 dB in each of two passes."},
 
     Key{"task.peg_in_hole", "target", KeyType::Text, {}, "", "!", "Name of the part to insert into: a bore_plate, or with `clearance_mm` any part."},
     Key{"task.peg_in_hole", "clearance_mm", KeyType::Number, kPositive, "", "(what the diameters leave)", "Play of the held part in the bore on every side of the axis. Of a peg in a bore_plate their diameters say it; of other parts, such as meshes, it has to be said here."},

@@ -147,6 +147,7 @@ plan::Task readTask(const StudyTables& tables, scene::SceneSpec* scene, Errors& 
         placement || assembly || scene == nullptr || !read.has("target") ? nullptr : findTarget(read, *scene);
     if (!own_sound || scene == nullptr) return task;
     if (!placement && !assembly) task.target = read.text("target");
+    task.motion_bandwidth = read.number("motion_bandwidth_hz");
     if (!pair) task.timeout = read.number("timeout_s");
     if (!pair) task.leave_radius = read.number("leave_radius_mm");
     if (!assembly && scene->effects.snap.any() && scene->effects.picks())

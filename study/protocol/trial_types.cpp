@@ -6,7 +6,8 @@
 namespace passung::protocol {
 namespace {
 
-constexpr std::array<std::string_view, 3> kPegInHole{"search_time_s", "insertion_time_s", "insertion_depth_m"};
+constexpr std::array<std::string_view, 4> kPegInHole{"search_time_s", "insertion_time_s", "insertion_depth_m",
+                                                     "contact_time_outside_s"};
 constexpr std::array<std::string_view, 5> kNarrowPassage{"passage_time_s", "passage_path_m", "passage_contact_time_s",
                                                          "passage_peak_force_N", "passage_entries"};
 constexpr std::array<std::string_view, 5> kContourFollowing{

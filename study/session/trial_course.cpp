@@ -30,6 +30,7 @@ using plan::TimedBy;
 TrialCourse::TrialCourse(const plan::Condition& condition, const Pose& X_WT, std::uint64_t attempt_seed)
     : X_WT_(X_WT),
       leave_radius_(condition.task.leave_radius),
+      motion_bandwidth_(condition.task.motion_bandwidth),
       rule_(condition.task, condition.scene, X_WT, attempt_seed),
       timeout_(std::llround(condition.task.timeout / kTickSeconds)),
       timed_by_(condition.timed_by) {}
@@ -92,6 +93,7 @@ measures::TrialContext TrialCourse::context() const {
                                                        : Outcome::Aborted;
     context.X_WT = X_WT_;
     context.leave_radius = leave_radius_;
+    context.motion_bandwidth = motion_bandwidth_;
     context.watched = timed_by_ == TimedBy::Program;
     rule_.describe(context);
     return context;

@@ -75,6 +75,7 @@ private:
 
     Pose X_WT_;
     double leave_radius_;
+    double motion_bandwidth_;
     TrialRule rule_;
     std::int64_t timeout_;  // [periods]
     plan::TimedBy timed_by_;

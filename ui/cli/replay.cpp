@@ -32,11 +32,12 @@ void trimToShortest(std::vector<std::vector<TickRecord>>& hands) {
 class Replays {
 public:
     Replays(const store::StoreReader& reader, const ReplayArguments& options,
-            const std::vector<store::DetectionRow>& detections)
+            const std::vector<store::DetectionRow>& detections, const std::vector<store::MeasureRow>& formulas)
         : reader_(reader),
           store_(run::openBuilds(options.import_limits)),
           plans_(reader, options.meshes, options.import_limits) {
         for (const auto& row : detections) detections_[row.attempt_id].push_back(row.detection);
+        for (const auto& row : formulas) formula_versions_[row.measure] = row.formula_version;
     }
 
     /// Prints one line per attempt.
@@ -73,9 +74,11 @@ public:
             fmt::print("{}: NOT PROVEN: no tick of it is recorded ({})\n", nameOf(attempt), attempt.outcome);
             return Verdict::NotProven;
         }
+        std::size_t study_hands = 1;
+        for (const plan::Condition& c : conditions) study_hands = std::max(study_hands, c.scene.handCount());
         const auto scenes = run::buildScenes(session::renderedScenes(*condition, attempt.seed), parts_);
         if (!scenes) return scenes.errors();
-        const auto again = compareMeasures(attempt, *condition, hands);
+        const auto again = compareMeasures(attempt, *condition, hands, study_hands);
         if (!again) return again.errors();
         return tell(attempt, replay::replayHands(scenes->turns, hands), *again);
     }
@@ -89,12 +92,24 @@ private:
     /// What the recorded ticks give again of what was measured.
     struct MeasuresAgain {
         std::string difference;    // the first measure, or the outcome, that they do not give; empty if they give all
-        std::string not_recorded;  // a measure that was not taken then
+        std::string not_recorded;  // a measure that was not taken then, or by another formula: "x was not recorded"
     };
+
+    /// Tells that the database holds the measure by another formula than this program's of a study with so many hands.
+    std::optional<std::string> otherFormula(const std::string& measure, std::size_t study_hands) const {
+        const auto recorded = formula_versions_.find(measure);
+        const auto& all = measures::definitions();
+        const auto own = std::ranges::find(all, measure, &measures::MeasureDefinition::name);
+        if (recorded == formula_versions_.end() || own == all.end() ||
+            recorded->second == measures::versionOf(*own, study_hands))
+            return std::nullopt;
+        return fmt::format("{} is by version {} of its formula", measure, recorded->second);
+    }
 
     /// Bits count: the formulas are exact functions of what is stored.
     Result<MeasuresAgain> compareMeasures(const store::AttemptRow& attempt, const plan::Condition& condition,
-                                          const std::vector<std::vector<TickRecord>>& hands) const {
+                                          const std::vector<std::vector<TickRecord>>& hands,
+                                          std::size_t study_hands) const {
         const auto outcome = measures::outcomeNamed(attempt.outcome);
         if (!outcome || !attempt.end_ns) return MeasuresAgain{};  // it did not end: nothing was measured
         session::StoredEnd end{*outcome, (*attempt.end_ns - attempt.start_ns) / kTickNanoseconds, {}, attempt.seed};
@@ -111,10 +126,14 @@ private:
         };
         MeasuresAgain found_again;
         for (const measures::Value& value : again->measures) {
+            if (const auto formula = otherFormula(value.name, study_hands)) {
+                found_again.not_recorded = *formula;
+                continue;
+            }
             const auto found = attempt.measures.find(value.name);
             const auto& undefined = attempt.undefined_measures;
             if (found == attempt.measures.end() && std::ranges::find(undefined, value.name) == undefined.end()) {
-                found_again.not_recorded = value.name;
+                found_again.not_recorded = value.name + " was not recorded";
                 continue;
             }
             const auto stored = found == attempt.measures.end() ? std::nullopt : std::optional(found->second);
@@ -168,10 +187,8 @@ private:
             return Verdict::Differs;
         }
         if (!again.not_recorded.empty()) {
-            fmt::print(
-                "{}: NOT PROVEN: {} ticks, every recorded bit and every recorded measure the same, but {} was not "
-                "recorded\n",
-                name, report.ticks, again.not_recorded);
+            fmt::print("{}: NOT PROVEN: {} ticks, every recorded bit and every recorded measure the same, but {}\n",
+                       name, report.ticks, again.not_recorded);
             return Verdict::NotProven;
         }
         fmt::print("{}: {} ticks, every recorded bit and every measure the same, state hash {}\n", name, report.ticks,
@@ -184,6 +201,7 @@ private:
     scene::PartCache parts_{store_.get()};
     run::StoredPlans plans_;
     std::map<std::int64_t, std::vector<measures::Detection>> detections_;  // by attempt
+    std::map<std::string, std::int64_t> formula_versions_;                 // by measure, as recorded
 };
 
 }  // namespace
@@ -204,7 +222,9 @@ int replay(const ReplayArguments& options) {
     }
     const auto detections = reader->detections();
     if (!detections) return fail(detections.errors());
-    Replays replays(*reader, options, *detections);
+    const auto formulas = reader->measures();
+    if (!formulas) return fail(formulas.errors());
+    Replays replays(*reader, options, *detections, *formulas);
     std::map<Verdict, std::size_t> count;
     for (const auto& attempt : attempts) {
         const auto verdict = replays.replay(attempt);

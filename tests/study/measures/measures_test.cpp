@@ -15,6 +15,8 @@ namespace {
 
 using std::numbers::pi;
 
+/// What is left of the filter's beginning at rest after 300 ms: exp(-2 pi 10 Hz 0.3 s / sqrt 2) of its lag.
+constexpr double kSettled = 1e-7;
 constexpr double kStep = 0x1p-13;  // [m] a tick; exact in 32 bits, so that sums are exact too
 
 /// `count` ticks from 0, hand and proxy far above the target's mouth at the origin, no contact.
@@ -73,7 +75,7 @@ TEST(Measures, StraightLineHasTheLengthOfItsStepsAndItsClockStartsOutsideTheLeav
     for (std::size_t i = 0; i < records.size(); ++i)
         records[i].hand_position_m = {static_cast<float>(kStep * static_cast<double>(i)), 0.0f, 0.5f};
     const auto values = measure(records, contextUntil(1000));
-    EXPECT_DOUBLE_EQ(*values.at("path_length_m"), 1000.0 * kStep);
+    EXPECT_NEAR(*values.at("path_length_m"), 1000.0 * kStep, kSettled);
     EXPECT_DOUBLE_EQ(*values.at("trial_time_s"), 1.0);
     EXPECT_DOUBLE_EQ(*values.at("completion_time_s"), 0.836);
     EXPECT_DOUBLE_EQ(*values.at("success"), 1.0);
@@ -125,8 +127,9 @@ TEST(Measures, CompletionTimeIsEmptyWithoutSuccess) {
 }
 
 TEST(Measures, CircleHasTheLengthOfItsChordsAndOneTurnOfRotation) {
-    // Truth: closed form. Chords: 2 r n sin(π/n). 32-bit positions of 0.05 m are off by < 2e-9 m each, the sum of
-    // 1000 steps by far less than 1e-6 m; 32-bit quaternions turn a step by < 2e-7 rad, the sum by < 2e-4 rad.
+    // Truth: closed form. Chords: 2 r n sin(π/n), of a circle that the low-pass draws in by 1/(1 + (1 Hz / 10 Hz)^4),
+    // 1e-4, and by 3 % in the 50 ms at its ends, where the point reflection bends the other way; half as much of the
+    // quaternions, which turn half as fast.
     constexpr int n = 1000;
     constexpr double r = 0.05;
     const Vec3 axis = Vec3(1.0, -2.0, 0.5).normalized();
@@ -141,8 +144,8 @@ TEST(Measures, CircleHasTheLengthOfItsChordsAndOneTurnOfRotation) {
                                   static_cast<float>(v.y()), static_cast<float>(v.z())};
     }
     const auto values = measure(records, contextUntil(n));
-    EXPECT_NEAR(*values.at("path_length_m"), 2.0 * r * n * std::sin(pi / n), 1e-6);
-    EXPECT_NEAR(*values.at("rotation_path_rad"), 2.0 * pi, 2e-4);
+    EXPECT_NEAR(*values.at("path_length_m"), 2.0 * r * n * std::sin(pi / n), 5e-4 * 2.0 * pi * r);
+    EXPECT_NEAR(*values.at("rotation_path_rad"), 2.0 * pi, 5e-4 * 2.0 * pi);
 }
 
 TEST(Measures, ForcesAndDepthsAverageOverContactTicksOnly) {
@@ -240,7 +243,7 @@ TEST(Measures, HandThatMovesAgainstAForceDoesPositiveWork) {
         records[i].hand_position_m = {static_cast<float>(kStep * static_cast<double>(i)), 0.0f, 0.5f};
         records[i].force_N = {-2.0f, 7.0f, 0.0f};  // the sideways part does no work
     }
-    EXPECT_DOUBLE_EQ(*measure(records, contextUntil(1000)).at("work_J"), 2.0 * 1000.0 * kStep);
+    EXPECT_NEAR(*measure(records, contextUntil(1000)).at("work_J"), 2.0 * 1000.0 * kStep, 2.0 * kSettled);
 }
 
 TEST(Measures, HandThatTurnsWithATorqueTakesWorkOut) {
@@ -383,7 +386,7 @@ TEST(Measures, MissingTicksCountForNoDurationAndTheirStepIsStraight) {
     }
     records.erase(records.begin() + 200, records.begin() + 300);
     const auto values = measure(records, contextUntil(1000));
-    EXPECT_DOUBLE_EQ(*values.at("path_length_m"), 1000.0 * kStep);
+    EXPECT_NEAR(*values.at("path_length_m"), 1000.0 * kStep, kSettled);
     EXPECT_DOUBLE_EQ(*values.at("contact_time_s"), 0.9);
     EXPECT_DOUBLE_EQ(*values.at("trial_time_s"), 1.0);
 }
@@ -426,11 +429,11 @@ TEST(Measures, WhatTheOtherHandDoesIsMeasuredToo) {
     EXPECT_DOUBLE_EQ(*values.at("min_proxy_gap_m"), 0x1p-18);
     EXPECT_DOUBLE_EQ(*values.at("mean_force_N"), (100.0 * 1.0 + 200.0 * 3.0) / 300.0);
     EXPECT_DOUBLE_EQ(*values.at("mean_proxy_depth_m"), 0x1p-12 * 200.0 / 300.0);
-    EXPECT_DOUBLE_EQ(*values.at("path_length_m"), 1000.0 * kStep);
+    EXPECT_NEAR(*values.at("path_length_m"), 1000.0 * kStep, kSettled);
     EXPECT_DOUBLE_EQ(*values.at("contact_time_s"), 0.25);
     EXPECT_DOUBLE_EQ(*values.at("contact_onsets"), 1.0);
     EXPECT_NEAR(*values.at("impulse_Ns"), 0.1 * 1.0 + 0.2 * 3.0, 1e-12);
-    EXPECT_NEAR(*values.at("work_J"), 3.0 * 200.0 * kStep, 1e-12);
+    EXPECT_NEAR(*values.at("work_J"), 3.0 * 200.0 * kStep, 3.0 * kSettled);
     EXPECT_DOUBLE_EQ(*values.at("saturated_share"), 0.2);
     EXPECT_DOUBLE_EQ(*values.at("force_limited_ticks"), 200.0);
     EXPECT_DOUBLE_EQ(*values.at("completion_time_s"), 1.0 - 0.164);

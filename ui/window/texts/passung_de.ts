@@ -1342,8 +1342,20 @@
         <translation>Weg der Hand</translation>
     </message>
     <message>
+        <source>Path length over the straight distance</source>
+        <translation>Weg der Hand durch die gerade Strecke</translation>
+    </message>
+    <message>
         <source>Rotation path of the hand</source>
         <translation>Drehweg der Hand</translation>
+    </message>
+    <message>
+        <source>Smoothness: spectral arc length (SPARC)</source>
+        <translation>Glätte: spektrale Bogenlänge (SPARC)</translation>
+    </message>
+    <message>
+        <source>Smoothness: log dimensionless jerk</source>
+        <translation>Glätte: Logarithmus des dimensionslosen Rucks</translation>
     </message>
     <message>
         <source>Contact onsets</source>
@@ -1354,12 +1366,20 @@
         <translation>Dauer des Kontakts</translation>
     </message>
     <message>
+        <source>Contact time outside the hole</source>
+        <translation>Dauer des Kontakts außerhalb des Lochs</translation>
+    </message>
+    <message>
         <source>Mean force</source>
         <translation>Mittlere Kraft</translation>
     </message>
     <message>
         <source>Peak force</source>
         <translation>Größte Kraft</translation>
+    </message>
+    <message>
+        <source>Force, 99th percentile</source>
+        <translation>Kraft, 99. Perzentil</translation>
     </message>
     <message>
         <source>Mean torque</source>
@@ -1370,6 +1390,10 @@
         <translation>Größtes Drehmoment</translation>
     </message>
     <message>
+        <source>Torque, 99th percentile</source>
+        <translation>Drehmoment, 99. Perzentil</translation>
+    </message>
+    <message>
         <source>Mean depth at the hand&apos;s pose</source>
         <translation>Mittlere Tiefe der Hand</translation>
     </message>
@@ -1378,12 +1402,20 @@
         <translation>Größte Tiefe der Hand</translation>
     </message>
     <message>
+        <source>Depth at the hand&apos;s pose, 99th percentile</source>
+        <translation>Tiefe der Hand, 99. Perzentil</translation>
+    </message>
+    <message>
         <source>Mean depth at the proxy&apos;s pose</source>
         <translation>Mittlere Tiefe des Proxys</translation>
     </message>
     <message>
         <source>Largest depth at the proxy&apos;s pose</source>
         <translation>Größte Tiefe des Proxys</translation>
+    </message>
+    <message>
+        <source>Depth at the proxy&apos;s pose, 99th percentile</source>
+        <translation>Tiefe des Proxys, 99. Perzentil</translation>
     </message>
     <message>
         <source>Least proven gap at the proxy&apos;s pose</source>
