@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <functional>
 #include <future>
 #include <thread>
 
@@ -18,6 +19,7 @@
 #include "analysis/export/note_table.h"
 #include "analysis/export/plan_file.h"
 #include "analysis/export/presentation_table.h"
+#include "analysis/export/psych_ds.h"
 #include "analysis/export/questionnaire_tables.h"
 #include "analysis/export/samples.h"
 #include "analysis/export/secondary_table.h"
@@ -32,35 +34,36 @@ namespace {
 
 constexpr const char* kSamplesPattern = "samples/*.csv.gz";
 
-std::vector<Table> makeTables(const StudyData& study) {
+/// Makes the tables one after the other: all at once they would be larger than what they are made of.
+void forEachTable(const StudyData& study, const std::function<void(Table)>& take) {
     const std::vector<Cell> cells = cellsOf(study);
-    std::vector<Table> tables = {makeTrials(study), makeCells(study, cells)};
-    for (Table& table : makeWide(study, cells)) tables.push_back(std::move(table));
-    if (!study.analyses.empty()) tables.push_back(makeAnalyses(study, cells));
-    tables.push_back(makeEvents(study));
-    if (!study.notes.empty()) tables.push_back(makeNotes(study));
-    tables.push_back(makeSessions(study));
-    tables.push_back(makeParticipants(study));
-    tables.push_back(makeTiming(study));
-    tables.push_back(makeContactEnergy(study));
-    tables.push_back(makeExactOverlap(study));
-    if (Table steps = makeAssemblySteps(study); !steps.rows.empty()) tables.push_back(std::move(steps));
-    if (Table shown = makePresentation(study); !shown.rows.empty()) tables.push_back(std::move(shown));
-    if (!study.detections.empty()) tables.push_back(makeSecondary(study));
+    take(makeTrials(study));
+    take(makeCells(study, cells));
+    for (Table& table : makeWide(study, cells)) take(std::move(table));
+    if (!study.analyses.empty()) take(makeAnalyses(study, cells));
+    take(makeEvents(study));
+    if (!study.notes.empty()) take(makeNotes(study));
+    take(makeSessions(study));
+    take(makeParticipants(study));
+    take(makeTiming(study));
+    take(makeContactEnergy(study));
+    take(makeExactOverlap(study));
+    if (Table steps = makeAssemblySteps(study); !steps.rows.empty()) take(std::move(steps));
+    if (Table shown = makePresentation(study); !shown.rows.empty()) take(std::move(shown));
+    if (!study.detections.empty()) take(makeSecondary(study));
     if (!study.staircase_steps.empty()) {
-        tables.push_back(makeStaircase(study));
-        tables.push_back(makeThresholds(study));
+        take(makeStaircase(study));
+        take(makeThresholds(study));
     }
     if (!study.questionnaires.empty()) {
-        tables.push_back(makeQuestionnaireItems(study));
-        tables.push_back(makeQuestionnaireScores(study));
-        tables.push_back(makeScoresWide(study));
-        tables.push_back(makeReliability(study));
+        take(makeQuestionnaireItems(study));
+        take(makeQuestionnaireScores(study));
+        take(makeScoresWide(study));
+        take(makeReliability(study));
     }
-    if (!study.definitions.empty()) tables.push_back(makeQuestionnaireKeys(study));
-    tables.push_back(makeFiles(study));
-    if (!study.accuracy.empty()) tables.push_back(makeAccuracy(study));
-    return tables;
+    if (!study.definitions.empty()) take(makeQuestionnaireKeys(study));
+    take(makeFiles(study));
+    if (!study.accuracy.empty()) take(makeAccuracy(study));
 }
 
 /// A cell without any text is a missing value like others.
@@ -190,12 +193,18 @@ Result<ExportReport> exportAll(const store::StoreReader& reader, const std::stri
     if (!folder) return folder.errors();
 
     Writer writer(*folder);
-    std::vector<Table> tables = makeTables(*study);
-    if (!reader.damages().empty()) tables.push_back(makeMissing(reader.damages()));
-    for (Table& table : tables) {
+    std::vector<Table> tables;  // without their rows
+    std::set<std::string> names_taken;
+    const auto write = [&](Table table) {
+        if (options.psych_ds) table.file = psychDsFile(*study, table, names_taken);
         markMissing(table);
         writer.write(table.file, toCsv(table));
-    }
+        table.rows = {};
+        tables.push_back(std::move(table));
+    };
+    forEachTable(*study, write);
+    if (!reader.damages().empty()) write(makeMissing(reader.damages()));
+    if (options.psych_ds) writer.write("dataset_description.json", psychDsDescription(*study, tables));
     if (options.samples) {
         tables.push_back({kSamplesPattern,
                           "One file per attempt, one row per recorded tick (1 kHz): "

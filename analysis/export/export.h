@@ -20,8 +20,9 @@ struct ExportedFile {
 };
 
 struct ExportOptions {
-    bool samples = true;  // every recorded tick: some 100 kB per second of a trial
-    bool group = false;   // let the group of this user read and write the files too, not this user alone
+    bool samples = true;    // every recorded tick: some 100 kB per second of a trial
+    bool psych_ds = false;  // tables in data/ under names of Psych-DS, with its dataset_description.json
+    bool group = false;     // let the group of this user read and write the files too, not this user alone
     /// Called now and then with the share that is done, 0 … 1.
     std::function<void(double)> progress;
     /// Asked as often: true ends the export, which then leaves nothing; empty: never.

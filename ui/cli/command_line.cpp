@@ -243,6 +243,10 @@ private:
         sub->add_option("DB", export_.database, "database of a study")->required();
         sub->add_option("--out", export_.out, "folder of the tables")->required();
         sub->add_flag("--no-samples", export_.no_samples, "leave out the recorded ticks");
+        sub->add_option("--format", export_.format,
+                        "plain: tables by their names; psych-ds: in data/, by the names and with the description of "
+                        "Psych-DS (plain)")
+            ->check(CLI::IsMember({"plain", "psych-ds"}));
         addGroup(sub, export_.group);
 
         sub = command("report",

@@ -103,6 +103,7 @@ struct ExportArguments {
     std::string out;
     bool no_samples = false;
     bool group = false;
+    std::string format = "plain";  // "psych-ds"
 };
 int exportData(const ExportArguments& options);
 int reportData(const ExportArguments& options);

@@ -29,9 +29,11 @@ int exportData(const ExportArguments& options) {
     if (!reader) return fail(reader.errors());
     ProgressLine progress;
     const auto report = exporter::exportAll(
-        *reader, options.out, {.samples = !options.no_samples, .group = options.group, .progress = [&](double share) {
-                                   progress.show(fmt::format("exporting: {:.0f} %", 100.0 * share));
-                               }});
+        *reader, options.out,
+        {.samples = !options.no_samples,
+         .psych_ds = options.format == "psych-ds",
+         .group = options.group,
+         .progress = [&](double share) { progress.show(fmt::format("exporting: {:.0f} %", 100.0 * share)); }});
     if (!report) return fail(report.errors());
     progress.show("");
     noteExport(options, report->kept);

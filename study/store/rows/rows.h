@@ -242,8 +242,7 @@ struct AttemptRow {
     bool valid = false;
     std::optional<std::string> invalid_reason;
     std::optional<std::string> not_counted_because;  // nothing: means count it
-    std::string params_json;
-    std::string stages_json;
+    std::string params_json, stages_json;  // of StoreReader::attempt() alone: of all attempts they are most of the file
     std::uint64_t seed = 0;
     std::string state_hash;     // 16 hexadecimal digits; empty if it did not end
     std::int64_t numerics = 0;  // of its recording (core/tick/numerics.h)

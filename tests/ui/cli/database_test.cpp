@@ -13,8 +13,8 @@ std::string askPython(const std::string& script, const std::string& arguments, i
     return ask("python3 '" PASSUNG_SOURCE_DIR "/tests/ui/cli/" + script + "' " + arguments, code);
 }
 
-/// A study whose factor has the name of a column of other studies, performed by three participants: one as planned, one who is
-/// excluded later, one whose session is broken off in a trial.
+/// A study whose factor has the name of a column of other studies, performed by three participants: one as planned, one
+/// who is excluded later, one whose session is broken off in a trial.
 class QueriedDatabase : public testing::Test {
 protected:
     void SetUp() override {
@@ -66,6 +66,25 @@ TEST_F(QueriedDatabase, IsReadFromPythonAndRToTheLastBit) {
         askPython("database_readers.py", "'" PASSUNG_SOURCE_DIR "' " + path("s.db") + path("out") + "1 2 3", code);
     EXPECT_EQ(code, 0) << said;
     EXPECT_NE(said.find("compared "), std::string::npos) << said;
+}
+
+TEST_F(QueriedDatabase, HasMeasuresThatItsExportedSamplesGiveAgain) {
+    // Truth: independent program (R 4, base): read.csv of the samples and the words of the codebook, to 1e-9.
+    if (!hasR()) GTEST_SKIP() << "R (r-base-core) is not installed";
+    ASSERT_EQ(run({"export", "s.db", "--out", "out"}), 0);
+    int code = 0;
+    const std::string said =
+        askR(PASSUNG_SOURCE_DIR "/tests/ui/cli/measures_again.R " + path("out") + "0.002 0.001 0.001", code);
+    EXPECT_EQ(code, 0) << said;
+}
+
+TEST_F(QueriedDatabase, IsExportedAsPsychDsToo) {
+    // Truth: independent program (Python, by the rules of Psych-DS 0.4): names, headers, variableMeasured.
+    ASSERT_EQ(run({"export", "s.db", "--out", "out", "--no-samples", "--format", "psych-ds"}), 0);
+    int code = 0;
+    const std::string said = askPython("psych_ds.py", path("out"), code);
+    EXPECT_EQ(code, 0) << said;
+    EXPECT_EQ(run({"export", "s.db", "--out", "other", "--format", "xlsx"}), 2) << "no such format";
 }
 
 }  // namespace

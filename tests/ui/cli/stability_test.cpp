@@ -87,7 +87,8 @@ TEST_F(Stability, AStudyKeepsTheMaximumWithWhichItBeganAndReplaysWithIt) {
     ASSERT_TRUE(attempts);
     EXPECT_GT(attempts->size(), 10u);
     for (const auto& attempt : *attempts)
-        EXPECT_NE(attempt.params_json.find("\"stiffness_N_per_m\":2000,"), std::string::npos);
+        EXPECT_NE(reader->attempt(attempt.attempt_id)->params_json.find("\"stiffness_N_per_m\":2000,"),
+                  std::string::npos);
     const auto kept = reader->stableStiffness(attempts->front().protocol_sha256);
     ASSERT_TRUE(kept);
     ASSERT_EQ(kept->size(), 1u);
