@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "core/base/device_description.h"
 #include "core/base/tick_record.h"
@@ -31,6 +32,22 @@ struct DisplayedImage {
     }
 };
 
+/// How a device stands. Only Ready gives poses and takes wrenches; Present is there and waits to be armed.
+enum class DeviceState { Absent, Present, Calibrating, Ready, Lost, Stale, Fault };
+
+constexpr const char* stateName(DeviceState state) {
+    constexpr const char* kNames[] = {"absent", "present", "calibrating", "ready", "lost", "stale", "fault"};
+    return kNames[static_cast<std::size_t>(state)];
+}
+
+/// What a reading says beside the pose; no tick looks at it.
+struct DeviceStatus {
+    DeviceState state = DeviceState::Ready;
+    double age_s = 0.0;                                          // of what the newest reading is made from
+    double grip_rad = std::numeric_limits<double>::quiet_NaN();  // opening of a gripper; NaN: there is none
+    bool commanded = true;  // the last wrench was taken as it was; false: limited, or withheld
+};
+
 /// A haptic device, simulated or real. The loop calls read() then command() once a cycle, from one thread.
 /// Both are rt-safe: no allocation, lock or throw.
 class HapticDevice {
@@ -39,6 +56,8 @@ public:
     virtual const DeviceDescription& description() const = 0;
     /// The newest reading. A simulated device first moves on by one tick under the last command.
     virtual DeviceReading read() noexcept = 0;
+    /// Of the newest reading, and of the command before it. rt-safe.
+    virtual DeviceStatus status() const noexcept { return {}; }
     /// `F_D_B`: wrench on the hand, about the handle's origin, in the device's base frame.
     virtual void command(const Wrench& F_D_B) noexcept = 0;
     /// False for a stand-in without motors, such as a mouse: no hand feels what it is commanded. Asked before the loop

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/device_unit.h"
 #include "core/base/tick_record.h"
 #include "core/loop/stability.h"
 
@@ -19,6 +20,7 @@ constexpr std::string_view kDriver = "published driver limit (CHAI3D, safe value
 constexpr std::string_view kDriverPeak = "published driver limit (CHAI3D), equal to the device's peak";
 constexpr std::string_view kRecalled = "recalled, unverified";
 constexpr std::string_view kProposed = "proposed here";
+constexpr std::string_view kServicePages = "public pages of the Inverse Service 3.5";
 constexpr std::string_view kAbsent = "not known or not present";
 
 DeviceParams sigma7() {
@@ -203,6 +205,101 @@ DeviceParams touch() {
     };
 }
 
+DeviceParams inverse3() {
+    return {
+        .name = "inverse3",
+        .label = "Haply Inverse3 with a grip (simulated)",
+        .sensed_degrees = 6,
+        .actuated_degrees = 3,
+        .delay_ticks = 1,
+        .degrees_source = "degrees: the service's public pages; delay (a message each way): proposed here",
+        .mass = {0.2, kProposed},
+        .inertia = {1e-4, kProposed},
+        .damping = {0.5, kProposed},
+        .rotational_damping = {5e-4, kProposed},
+        .coulomb_force = {0.1, kProposed},
+        .coulomb_torque = {5e-4, kProposed},
+        .quantum = {50e-6, kProposed},
+        .rotational_quantum = {1e-3, kProposed},
+        .max_force = {8.0, kProposed},
+        .max_torque = {0.0, kAbsent},
+        .continuous_force = {0.0, kAbsent},
+        .peak_force = {0.0, kAbsent},
+        .peak_torque = {0.0, kAbsent},
+        .max_force_rate = {2000.0, kProposed},
+        .workspace_radius = {0.15, kProposed},
+        .vendor_stiffness = {0.0, kAbsent},
+        .vendor_rotational_stiffness = {0.0, kAbsent},
+        .recommended_damping = {4.0, kProposed},
+        .recommended_rotational_damping = {0.0, kAbsent},
+        .buttons = {3.0, kServicePages},
+    };
+}
+
+/// Has no motors: what it is told is shown as an arrow, and its handle, which is the driver's own, gives way to it. The
+/// limits are those of the arrow, the mechanism is the sigma.7's.
+DeviceParams spaceMouse() {
+    return {
+        .name = "spacemouse",
+        .label = "3Dconnexion SpaceMouse (simulated)",
+        .sensed_degrees = 6,
+        .actuated_degrees = 6,
+        .delay_ticks = 0,
+        .degrees_source = "six degrees of speed: the daemon's protocol; delay: proposed here",
+        .mass = {0.4, kProposed},
+        .inertia = {5e-4, kProposed},
+        .damping = {1.0, kProposed},
+        .rotational_damping = {2e-3, kProposed},
+        .coulomb_force = {0.1, kProposed},
+        .coulomb_torque = {1e-3, kProposed},
+        .quantum = {1.5e-6, kProposed},
+        .rotational_quantum = {2.3e-4, kProposed},
+        .max_force = {10.0, kProposed},
+        .max_torque = {0.5, kProposed},
+        .continuous_force = {0.0, kAbsent},
+        .peak_force = {0.0, kAbsent},
+        .peak_torque = {0.0, kAbsent},
+        .max_force_rate = {5000.0, kProposed},
+        .workspace_radius = {0.15, kProposed},
+        .vendor_stiffness = {2000.0, kProposed},
+        .vendor_rotational_stiffness = {1.0, kProposed},
+        .recommended_damping = {5.0, kProposed},
+        .recommended_rotational_damping = {2e-3, kProposed},
+        .buttons = {2.0, kProposed},
+    };
+}
+
+/// Stands for whatever device serves: nothing of it is known, its limits are the most that may be asked of it.
+DeviceParams anyDevice() {
+    return {
+        .name = kAnyKind,
+        .label = "Any device (simulated)",
+        .sensed_degrees = 6,
+        .actuated_degrees = 6,
+        .delay_ticks = 0,
+        .degrees_source = "the protocol says what it needs of them; delay: proposed here",
+        .mass = {0.3, kProposed},
+        .inertia = {3e-4, kProposed},
+        .damping = {1.0, kProposed},
+        .rotational_damping = {2e-3, kProposed},
+        .coulomb_force = {0.1, kProposed},
+        .coulomb_torque = {1e-3, kProposed},
+        .quantum = {20e-6, kProposed},
+        .rotational_quantum = {2e-4, kProposed},
+        .max_force = {20.0, kProposed},
+        .max_torque = {1.0, kProposed},
+        .continuous_force = {0.0, kAbsent},
+        .peak_force = {0.0, kAbsent},
+        .peak_torque = {0.0, kAbsent},
+        .max_force_rate = {2000.0, kProposed},
+        .workspace_radius = {0.075, kProposed},
+        .vendor_stiffness = {0.0, kAbsent},
+        .vendor_rotational_stiffness = {0.0, kAbsent},
+        .recommended_damping = {4.0, kProposed},
+        .recommended_rotational_damping = {2e-3, kProposed},
+    };
+}
+
 struct PresetStiffness {
     double value = 0.0;
     std::string source;
@@ -282,6 +379,10 @@ DeviceDescription describe(const DeviceParams& p) {
                                   .quantum_m = p.quantum.value,
                                   .rotational_quantum_rad = p.rotational_quantum.value};
 
+    if (p.name == kAnyKind) {
+        d.stability_source = "not known: it depends on the device";
+        return d;
+    }
     const PresetStiffness linear = stableStiffness({.mass = p.mass.value,
                                                     .damping = p.damping.value,
                                                     .stiffness = 0,
@@ -312,9 +413,16 @@ const std::vector<DeviceParams>& presets() {
     return all;
 }
 
+const std::vector<DeviceParams>& standIns() {
+    static const std::vector<DeviceParams> all = {inverse3(), spaceMouse(), anyDevice()};
+    return all;
+}
+
 const DeviceParams* findPreset(std::string_view name) {
-    const auto found = std::ranges::find(presets(), name, &DeviceParams::name);
-    return found == presets().end() ? nullptr : &*found;
+    for (const auto* list : {&presets(), &standIns()})
+        if (const auto found = std::ranges::find(*list, name, &DeviceParams::name); found != list->end())
+            return &*found;
+    return nullptr;
 }
 
 }  // namespace passung::simulated

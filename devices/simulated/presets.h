@@ -57,7 +57,11 @@ DeviceDescription describe(const DeviceParams& params);
 /// sigma7, hug, virtuose6d, falcon, whi, touch.
 const std::vector<DeviceParams>& presets();
 
-/// nullptr if there is no preset of that name.
+/// Simulated in place of kinds of device whose mechanism nobody has told: inverse3, spacemouse, and kAnyKind, of which
+/// no stable stiffness is known.
+const std::vector<DeviceParams>& standIns();
+
+/// Of either; nullptr if there is none of that name.
 const DeviceParams* findPreset(std::string_view name);
 
 }  // namespace passung::simulated

@@ -57,6 +57,13 @@ struct StaircaseLevel {
     double level = 0.0;
 };
 
+/// What a device of kind "any" must do at least.
+struct DeviceNeeds {
+    double force = 0.0;   // [N]; 0: it need not push
+    double torque = 0.0;  // [N·m]; 0: it need not turn
+    int degrees = 6;      // that it measures
+};
+
 /// One combination of factor levels with everything it means.
 struct Condition {
     std::string name;                 // levels joined by "/", unique
@@ -77,7 +84,8 @@ struct Condition {
     Cues cues;
     TimedBy timed_by = TimedBy::Program;
     SecondaryTask secondary;
-    std::string device;                           // preset
+    std::string device;                           // its kind
+    std::optional<DeviceNeeds> needs = {};        // of the kind "any", for all hands
     std::vector<std::string> other_devices = {};  // likewise, of each of the scene's other hands
     std::string params_json;                      // every resolved number, for the attempt's row
 };

@@ -132,6 +132,9 @@ constexpr std::array kTables{
     TableInfo{"scene", "Top level of a scene", "In a study below `[scene]`: `[scene.contact]`, `[[scene.part]]` and so on. A study holds its scene itself, so that\nthe stored text is all of it."},
     TableInfo{"hand", "`[[hand]]`", "Each hand pushes the others' parts and feels them. The coupling of `[contact]` is one for all hands."},
     TableInfo{"part_file", "Top level of a part file", ""},
+    TableInfo{"station_file", "Station file", "Which device serves each hand at this computer: `station.toml` in the folder of the user's data, or the file that\n`--station-file` names. `passung doctor --write-station FILE` writes one of what it finds. Without it all devices are simulated."},
+    TableInfo{"station", "`[station]`", ""},
+    TableInfo{"station_device", "`[station.device.NAME]`", "Simulated participants hold simulated devices, whatever stands here."},
     TableInfo{"calibration", "Calibration of a device", "The program writes it: `passung doctor --device NAME --find-stiffness`. `passung doctor` says where it is."},
     TableInfo{"part", "`[[part]]`", "A part has either a `mesh` or a `shape`."},
     TableInfo{"pose", "`pose` of a part", ""},
@@ -345,7 +348,7 @@ std::string keyTable(std::span<const DeviceDescription> devices, std::span<const
                                 range.starts_with("must be ") ? range.substr(8) : range, fallbackText(key), key.doc);
         }
     }
-    text += "\n## Device presets\n\nWhat `preset` in `[device]` may name. \"max\" of a stiffness is the stable one.\n";
+    text += "\n## Kinds of device\n\nWhat `kind` in `[device]` may name. \"max\" of a stiffness is the stable one.\n";
     text +=
         "\n| preset | device | stable N/m | stable Nm/rad | force N | torque Nm |\n| --- | --- | --- | --- | --- | --- "
         "|\n";

@@ -470,8 +470,14 @@ std::string levelsJson(const std::vector<plan::Factor>& factors, const std::vect
 std::string paramsJson(const plan::Condition& condition) {
     const auto& scene = condition.scene;
     JsonObject json;
-    json.text("device", condition.device)
-        .text("shown_pose", condition.shown == plan::ShownPose::Proxy ? "proxy" : "device")
+    json.text("device", condition.device);
+    if (condition.needs)
+        json.json("device_needs", JsonObject()
+                                      .number("force_N", condition.needs->force)
+                                      .number("torque_Nm", condition.needs->torque)
+                                      .integer("degrees", condition.needs->degrees)
+                                      .str());
+    json.text("shown_pose", condition.shown == plan::ShownPose::Proxy ? "proxy" : "device")
         .text("result", plan::shownResultName(condition.result))
         .json("parts", listOf(scene.parts, partJson))
         .json("contact", contactJson(condition))

@@ -341,7 +341,8 @@ private:
         auto content = readSceneNode(tables.scene, {"scene"}, "scene", scenes_, errors_);
         const Node* device = tables.scene.find("device");
         const bool names_device =
-            device != nullptr && (device->kind != Node::Kind::Table || device->find("preset") != nullptr);
+            device != nullptr &&
+            (device->kind != Node::Kind::Table || device->find("preset") != nullptr || device->find("kind") != nullptr);
         if (!names_device)
             errors_.push_back(errorAt(device != nullptr ? device->place : tables.scene.place, "device.preset", "",
                                       "required in a study"));
@@ -352,6 +353,7 @@ private:
         condition.allow_unstable = content.allow_unstable;
         condition.device = std::move(content.device);
         condition.other_devices = std::move(content.other_devices);
+        condition.needs = content.needs;
         const bool task = content.parts_sound && isSound([&] {
                               if (root_.has("task")) condition.task = readTask(tables, &condition.scene, errors_);
                           });

@@ -32,6 +32,16 @@ inline constexpr std::array kSceneKeys{
     Key{"part_file", "unit", Choice, kAny, "um|mm|cm|m|in", "(the caller's)", "Unit of lengths without one in their key."},
     Key{"part_file", "part", Tables, kAny, "", "!", "Exactly one part."},
 
+    Key{"station_file", "station", Table, kAny, "", "!", "What this station has."},
+
+    Key{"station", "device", Table, kAny, "", "!", "Table of each hand that has a real device, by its name: `right` for the first hand, for a further one that of its `[[hand]]`."},
+
+    Key{"station_device", "kind", Text, kAny, "", "!", "Kind that the device serves, as protocols name it."},
+    Key{"station_device", "backend", Text, kAny, "", "!", "Way to it: one of those that `passung doctor` lists, or \"simulated\"."},
+    Key{"station_device", "serial", Text, kAny, "", "(the only one)", "Serial number of the unit, as `passung doctor` shows it; needed where there are two."},
+    Key{"station_device", "address", Text, kAny, "", "(the usual one)", "Where the program listens that serves it: for spacenavd the path of its socket, for haply HOST:PORT or HOST:PORT:EVENTPORT."},
+    Key{"station_device", "axes", Text, kAny, "", "(the backend's)", "Axes of the device along x, y and z of its base, as in \"x -z y\"; spacenavd only."},
+
     Key{"calibration", "device", Text, kAny, "", "!", "Name of the device."},
     Key{"calibration", "stable_stiffness_N_per_m", Number, atLeast(0), "", "!", "Stable maximum, for which \"max\" stands."},
     Key{"calibration", "stable_rotational_stiffness_Nm_per_rad", Number, atLeast(0), "", "!", "Stable maximum for rotations; 0 = torque is not actuated."},
@@ -144,7 +154,11 @@ inline constexpr std::array kSceneKeys{
     Key{"contact", "two_way", Boolean, kAny, "", "(true where a pin, fin, wall, acute edge or relief of an obstacle would slip between the held part's points)", "True where points of the obstacles are held against the held part as well: finds edges between the held part's points, and takes about twice as long. With false, what would slip through is an error."},
     Key{"contact", "proxy_filter_hz", Number, from(0, 500), "", "0", "Corner of the proxy's low-pass while in contact; 0 = no filter. God objects only."},
 
-    Key{"device", "preset", Text, kAny, "", "(none)", "Name of a known device."},
+    Key{"device", "kind", Text, kAny, "", "(none)", "Kind of device, one of those below: its limits, degrees and workspace. A station file says which unit serves it, the simulated one if it says nothing. \"any\": whatever unit does what the `least_` keys say; a stiffness then is a number."},
+    Key{"device", "preset", Text, kAny, "", "(none)", "Earlier name of `kind`."},
+    Key{"device", "least_force_N", Number, from(0, 100), "", "(only with kind = \"any\")", "Force that the unit pushes with at least, and the most that is asked of it; 0: it need not push."},
+    Key{"device", "least_torque_Nm", Number, from(0, 10), "", "0", "Torque likewise; 0: it need not turn. Only with kind = \"any\"."},
+    Key{"device", "least_degrees", Integer, from(3, 6), "", "6", "Degrees that the unit measures at least: 6, or 3 where nothing has to be turned. Only with kind = \"any\"."},
     Key{"device", "max_force_N", Number, above(0), "", "(the device's)", "Limit of the output, tighter than the device's."},
     Key{"device", "max_torque_Nm", Number, atLeast(0), "", "(the device's)", "Limit of the output, tighter than the device's."},
     Key{"device", "max_force_rate_N_per_s", Number, above(0), "", "(the device's)", "Limit of rising force, tighter than the device's."},

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "core/base/device_description.h"
 #include "core/scene/scene_spec.h"
+#include "study/plan/study_plan.h"
 #include "study/protocol/document.h"
 #include "study/protocol/part_surface.h"
 #include "study/protocol/table_reader.h"
@@ -16,7 +18,8 @@ namespace passung::protocol {
 /// A scene as read from a tree of values; only for readers in this room.
 struct SceneContent {
     scene::SceneSpec scene;
-    std::string device;                      // preset, empty if none is named
+    std::string device;                      // its kind, empty if none is named
+    std::optional<plan::DeviceNeeds> needs;  // of the kind "any"
     std::vector<std::string> other_devices;  // likewise of each of the scene's other hands
     double accuracy_budget = 0.0;            // [s] > 0: contact.accuracy is "auto"
     TextPosition accuracy_place;             // of that budget

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "core/base/device_unit.h"
 #include "core/base/regular_file.h"
 #include "core/scene/contact_geometry.h"
 #include "core/scene/field_estimate.h"
@@ -71,17 +72,45 @@ std::vector<scene::PartSpec> readParts(const TableReader& read, const Node& scen
     return parts;
 }
 
+/// The key that names the device: `kind`, or as it was called before, `preset`.
+std::string_view deviceKey(const TableReader& read) { return read.has("kind") ? "kind" : "preset"; }
+std::string deviceName(const TableReader& read) { return read.text(deviceKey(read)); }
+
 /// The device that the scene names; nullptr if none or unknown.
 const DeviceDescription* findDevice(const TableReader& read, std::span<const DeviceDescription> devices) {
-    if (!read.has("preset")) return nullptr;
-    const auto name = read.text("preset");
+    if (read.has("kind") && read.has("preset"))
+        read.fail("preset", "is an earlier name of kind: leave one of them out");
+    if (!read.has(deviceKey(read))) return nullptr;
+    const auto name = deviceName(read);
     std::vector<std::string_view> names;
     for (const auto& device : devices) {
         if (device.name == name) return &device;
         names.push_back(device.name);
     }
-    read.fail("preset", fmt::format("unknown device; known devices: {}", fmt::join(names, ", ")));
+    read.fail(deviceKey(read), fmt::format("unknown device; known devices: {}", fmt::join(names, ", ")));
     return nullptr;
+}
+
+/// What the scene needs of a device that may be any.
+std::optional<plan::DeviceNeeds> readNeeds(const TableReader& read) {
+    const bool any = deviceName(read) == kAnyKind;
+    for (const char* key : {"least_force_N", "least_torque_Nm", "least_degrees"})
+        if (read.has(key) && !any) read.fail(key, "only with kind = \"any\": another kind has its own");
+    if (!any) return std::nullopt;
+    if (!read.has("least_force_N")) read.fail("least_force_N", "required with kind = \"any\"; 0: it need not push");
+    return plan::DeviceNeeds{read.number("least_force_N"), read.number("least_torque_Nm"),
+                             static_cast<int>(read.integer("least_degrees"))};
+}
+
+/// Of any device no more than what is needed is asked, so that all of them render the same.
+void tightenTo(const TableReader& read, const plan::DeviceNeeds& needs, scene::OutputLimits& limits) {
+    const auto atMost = [&](const char* key, double need, double& limit) {
+        if (need > limit) read.fail(key, fmt::format("must not exceed what any device may need: {}", limit));
+        if (need > 0.0) limit = need;
+    };
+    atMost("least_force_N", needs.force, limits.max_force);
+    atMost("least_torque_Nm", needs.torque, limits.max_torque);
+    limits.actuates_torque = needs.torque > 0.0;
 }
 
 scene::OutputLimits readLimits(const TableReader& read, const DeviceDescription* device) {
@@ -98,6 +127,7 @@ scene::OutputLimits readLimits(const TableReader& read, const DeviceDescription*
             limits.rotational_quantum = device->mechanism->rotational_quantum_rad;
         }
     }
+    if (const auto needs = readNeeds(read)) tightenTo(read, *needs, limits);
     const auto tighten = [&](const char* key, double& limit) {
         if (!read.has(key)) return;
         if (device != nullptr && read.number(key) > limit)
@@ -417,7 +447,9 @@ void readOtherHands(const TableReader& read, std::span<const std::string> names,
         }
         checkStability(device_table, contact_table, device, content.scene.contact, hand);
         checkOtherStiffness(hand_table, contact_table, device, content.scene.contact, content.scene.effects, hand);
-        content.other_devices.push_back(device_table.text("preset"));
+        content.other_devices.push_back(deviceName(device_table));
+        if (hand_table.has("device") && content.other_devices.back() == kAnyKind)
+            device_table.fail(deviceKey(device_table), "leave the table out: what [device] needs holds for all hands");
         content.scene.other_hands.push_back(std::move(hand));
     }
 }
@@ -635,7 +667,8 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     const std::size_t before_device = errors.size();
     const auto device_table = open("device");
     const DeviceDescription* device = findDevice(device_table, reading.devices);
-    content.device = device_table.text("preset");
+    content.device = deviceName(device_table);
+    content.needs = readNeeds(device_table);
     content.scene.limits = readLimits(device_table, device);
     const std::size_t of_device = errors.size() - before_device;
     const auto contact_table = open("contact");
@@ -643,7 +676,8 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     content.scene.registration = readRegistration(registration_table, units);
     content.scene.effects = readEffects(open("effects"), device, units, errors);
     if (content.parts_sound) checkPicking(read, open("effects"), content.scene, errors);
-    content.scene.contact = readContact(contact_table, device, device_table.has("preset"), content.scene.hand(0));
+    content.scene.contact =
+        readContact(contact_table, device, device_table.has(deviceKey(device_table)), content.scene.hand(0));
     readOtherHands(read, other_hands, units, reading.devices, device_table, contact_table, content, errors);
     if (content.scene.contact.geometry == scene::Geometry::Auto) content.scene.contact.geometry = reading.automatic;
     if (const auto problem = scene::geometryProblem(content.scene); content.parts_sound && problem)

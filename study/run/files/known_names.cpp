@@ -11,7 +11,8 @@ namespace passung::run {
 const std::vector<DeviceDescription>& presetDevices() {
     static const std::vector<DeviceDescription> devices = [] {
         std::vector<DeviceDescription> all;
-        for (const auto& preset : simulated::presets()) all.push_back(simulated::describe(preset));
+        for (const auto* list : {&simulated::presets(), &simulated::standIns()})
+            for (const auto& preset : *list) all.push_back(simulated::describe(preset));
         return all;
     }();
     return devices;

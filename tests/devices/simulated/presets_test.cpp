@@ -23,6 +23,17 @@ TEST(Presets, TheSixDevicesAreThereAndValid) {
     EXPECT_EQ(findPreset("sigma"), nullptr);
 }
 
+TEST(Presets, KindsWithoutAModelHaveAStandIn) {
+    // Truth: invariant.
+    for (const char* name : {"inverse3", "spacemouse", "any"}) {
+        const DeviceParams* p = findPreset(name);
+        ASSERT_NE(p, nullptr) << name;
+        EXPECT_TRUE(p->validate().empty()) << name;
+        EXPECT_EQ(describe(*p).stable_stiffness_N_per_m > 0.0, p->name != "any") << "of any device nobody knows it";
+    }
+    EXPECT_EQ(standIns().size(), 3u);
+}
+
 TEST(Presets, EveryValueSaysWhereItComesFrom) {
     // Truth: invariant.
     for (const DeviceParams& p : presets()) {

@@ -15,7 +15,8 @@ namespace {
 
 std::string completeTable() {
     std::vector<DeviceDescription> devices;
-    for (const auto& preset : simulated::presets()) devices.push_back(simulated::describe(preset));
+    for (const auto* list : {&simulated::presets(), &simulated::standIns()})
+        for (const auto& preset : *list) devices.push_back(simulated::describe(preset));
     std::vector<KnownWord> known;
     for (const auto& measure : measures::definitions()) known.push_back({measure.name, measure.label});
     return keyTable(devices, known);

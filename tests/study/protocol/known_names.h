@@ -12,7 +12,8 @@ namespace passung::protocol {
 
 inline std::vector<DeviceDescription> knownDevices() {
     std::vector<DeviceDescription> devices;
-    for (const auto& preset : simulated::presets()) devices.push_back(simulated::describe(preset));
+    for (const auto* list : {&simulated::presets(), &simulated::standIns()})
+        for (const auto& preset : *list) devices.push_back(simulated::describe(preset));
     return devices;
 }
 
