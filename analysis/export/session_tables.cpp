@@ -70,6 +70,15 @@ ColumnsOf<SessionRow> sessionColumns(const StudyData& study, const std::set<std:
              "0/1",
              &SessionRow::device_simulated,
              {.levels = {"0", "1"}}},
+            {"device_backends",
+             "Ways to the real devices that the session was performed on, parted by ;, each once; simulated: none was "
+             "real",
+             "text",
+             [](const SessionRow& session) {
+                 return session.device_backends.empty() ? "simulated" : listCell(session.device_backends);
+             }},
+            {"device_serials", "Serial numbers of these devices likewise, as they say them", "text",
+             [](const SessionRow& session) { return listCell(session.device_serials); }},
             {"experimenter", "Who led the session", "text", &SessionRow::experimenter},
             {"language", "Language of the texts", "text", &SessionRow::language},
             {"seed", "Seed of everything random in the session", "integer",

@@ -75,12 +75,15 @@ LoopApparatus::Run::Run(BuiltScenes built, std::vector<Hand> of_scene, const pla
       cycle(scenes.turns, portsOf(hands), condition.shown == plan::ShownPose::Proxy, screens, &cues, timed) {}
 
 LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock,
-                             Performer* performer, const ImportLimits& import_limits, BuildWatch told)
-    : described_(performer == nullptr ? simulated::describe(device) : performer->describe(device)),
+                             Performer* performer, const ImportLimits& import_limits, BuildWatch told, UnitRack* rack)
+    : described_(rack != nullptr && !rack->empty() ? rack->description()
+                 : performer == nullptr            ? simulated::describe(device)
+                                                   : performer->describe(device)),
       description_(described_),
       person_(person),
       clock_(clock),
       performer_(performer),
+      rack_(rack),
       store_(openBuilds(import_limits, std::move(told))) {}
 
 LoopApparatus::~LoopApparatus() = default;
@@ -156,8 +159,9 @@ LoopApparatus::HeldDevice LoopApparatus::makeOtherDevice(const simulated::Device
     const simulated::HandRegistration registration{r.X_WB, r.scale, r.X_DH};
     const simulated::VisibleTask task = otherTask(condition, hand, parts);
     HeldDevice held;
-    const bool simulated = performer_ == nullptr || performer_->kind() == plan::ParticipantKind::Simulated;
-    if (!simulated || condition.timed_by != plan::TimedBy::Program) {
+    if (rack_ != nullptr) held.device = rack_->lend(condition, hand, registration.handleFromPart(task.X_WHeldStart));
+    if (held.device != nullptr) return held;
+    if (!isSimulated() || condition.timed_by != plan::TimedBy::Program) {
         held.device =
             std::make_unique<simulated::RestingDevice>(preset, registration.handleFromPart(task.X_WHeldStart));
         return held;
@@ -177,7 +181,8 @@ LoopApparatus::HeldDevice LoopApparatus::makeDevice(const simulated::DeviceParam
     const simulated::HandRegistration registration{r.X_WB, r.scale, r.X_DH};
     const simulated::VisibleTask task = visibleTask(condition, parts);
     HeldDevice held;
-    if (performer_ != nullptr) held.device = performer_->device(preset, condition);
+    if (rack_ != nullptr) held.device = rack_->lend(condition, 0, registration.handleFromPart(task.X_WHeldStart));
+    if (held.device == nullptr && performer_ != nullptr) held.device = performer_->device(preset, condition);
     if (held.device != nullptr) return held;
     if (condition.timed_by == plan::TimedBy::Program) {
         auto device = std::make_unique<simulated::SimulatedDevice>(preset, simulatedHand(person_, trials_before), task,
@@ -195,10 +200,15 @@ LoopApparatus::HeldDevice LoopApparatus::makeDevice(const simulated::DeviceParam
     return held;
 }
 
+/// Nobody but a simulated person holds a device.
+bool LoopApparatus::isSimulated() const {
+    return performer_ == nullptr || performer_->kind() == plan::ParticipantKind::Simulated;
+}
+
 /// What windows drew and played, or what a simulated person's senses took. No device has an actuator for vibration yet.
 session::Delivered LoopApparatus::delivered(const std::optional<session::Presentation>& presentation) const {
     const session::Delivered& asked = run_->cues.asked();
-    if (performer_ == nullptr || performer_->kind() == plan::ParticipantKind::Simulated) {
+    if (isSimulated()) {
         session::Delivered delivered = asked;
         if (asked.masking > 0) delivered.sound = 0;  // noise covers it
         return delivered;
@@ -252,8 +262,19 @@ void LoopApparatus::halt() {
 }
 
 void LoopApparatus::rearm() {
-    const std::lock_guard lock(halt_mutex_);
-    halted_ = false;
+    {
+        const std::lock_guard lock(halt_mutex_);
+        halted_ = false;
+    }
+    if (rack_ != nullptr) rack_->arm();
+}
+
+std::vector<session::DeviceNews> LoopApparatus::takeDeviceNews() {
+    return rack_ == nullptr ? std::vector<session::DeviceNews>{} : rack_->takeNews();
+}
+
+std::string LoopApparatus::deviceNotReady(bool or_there) const {
+    return rack_ == nullptr ? std::string() : rack_->notReady(or_there);
 }
 
 session::LoopHealth LoopApparatus::stop() {

@@ -15,6 +15,7 @@
 #include "study/run/files/watched_store.h"
 #include "study/run/person/performer.h"
 #include "study/run/shown_overlap.h"
+#include "study/run/units/unit_rack.h"
 #include "study/session/apparatus.h"
 
 namespace passung::run {
@@ -22,11 +23,13 @@ namespace passung::run {
 enum class Clock { Virtual, RealTime };
 
 /// The session's apparatus: the haptic loop on a simulated device with a simulated hand, in either clock, or on what a
-/// performer holds. Where the program does not time the trial the hand has left the device: real parts, or nothing.
+/// performer holds, or on the station's real devices, which only people hold, in real time. Where the program does not
+/// time the trial the hand has left the device: real parts, or nothing.
 class LoopApparatus final : public session::Apparatus {
 public:
     LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock,
-                  Performer* performer = nullptr, const ImportLimits& import_limits = {}, BuildWatch told = {});
+                  Performer* performer = nullptr, const ImportLimits& import_limits = {}, BuildWatch told = {},
+                  UnitRack* rack = nullptr);
     ~LoopApparatus() override;
 
     /// The next person takes the device: as newly made, but for what is kept of parts. Between sessions.
@@ -45,6 +48,8 @@ public:
                          std::span<measures::TickOverlap> ticks) override;
     void halt() override;
     void rearm() override;
+    std::vector<session::DeviceNews> takeDeviceNews() override;
+    std::string deviceNotReady(bool or_there) const override;
 
 private:
     struct HeldDevice {
@@ -70,6 +75,7 @@ private:
             std::span<loop::ScreenRing* const> screens, bool timed);
     };
 
+    bool isSimulated() const;
     std::optional<session::Presentation> presentation() const;
     Result<BuiltScenes> build(const std::vector<session::RenderedScene>& scenes);
     HeldDevice makeDevice(const simulated::DeviceParams& preset, const plan::Condition& condition, BuiltParts parts,
@@ -85,6 +91,7 @@ private:
     person::SimulatedPerson person_;
     Clock clock_;
     Performer* performer_;
+    UnitRack* rack_;  // null: none is used
     std::unique_ptr<Builds> store_;
     WatchedStore watched_{store_.get()};
     scene::PartCache parts_{&watched_};

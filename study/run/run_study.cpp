@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <thread>
 
 #include "core/base/digest.h"
@@ -23,6 +25,7 @@
 #include "study/run/machine/calibration.h"
 #include "study/run/machine/host.h"
 #include "study/run/machine/stability_report.h"
+#include "study/run/person/at_device.h"
 #include "study/run/person/simulated_answers.h"
 #include "study/run/person/simulated_timer.h"
 #include "study/session/participant_order.h"
@@ -63,12 +66,13 @@ public:
 class StudyRun {
 public:
     StudyRun(plan::FrozenPlan plan, const RunOptions& options, const session::SessionListener& listener,
-             store::Store& store, std::string protocol_sha256)
+             store::Store& store, std::string protocol_sha256, UnitRack& rack)
         : plan_(std::move(plan)),
           options_(options),
           listener_(listener),
           store_(store),
-          sha256_(std::move(protocol_sha256)) {}
+          sha256_(std::move(protocol_sha256)),
+          rack_(rack) {}
 
     /// All sessions that are left to do; of a participant named by code the next one.
     Result<RunEnd> participant(int number) {
@@ -160,7 +164,7 @@ private:
             apparatus_->passTo(person);
         else
             apparatus_.emplace(*device, person, options_.clock, options_.performer, options_.import_limits,
-                               options_.told);
+                               options_.told, &rack_);
         return *apparatus_;
     }
 
@@ -177,6 +181,7 @@ private:
         start.seed = plan_->seed;
         start.clock = clock;
         start.device = apparatus.device();
+        start.units = rack_.units();
         if (measured()) start.host = hostText();
         start.timing_measured = measured();
         start.numerics = tick::kNumerics;
@@ -210,7 +215,7 @@ private:
             setup.answers = options_.performer->answers();
             setup.reader = options_.performer->reader();
         }
-        setup.shown = options_.performer != nullptr;
+        setup.shown = options_.performer != nullptr && !options_.performer->screens().empty();
         setup.language = options_.language;
         if (measured())
             setup.calibrated_utc = [](const std::string& device) {
@@ -228,6 +233,7 @@ private:
             }
         } const over{options_.performer};
         LoggedSink logged_sink(sink, options_.log);
+        apparatus.rearm();
         session::Session session(std::move(setup), apparatus, logged_sink, listener_);
         conduct(session, apparatus);
         if (session.state() == session::SessionState::Failed) return session.errors();
@@ -249,6 +255,8 @@ private:
                 session::SessionWaits event{session.view(), ""};
                 if (const std::string& device = event.view.awaited_device; !device.empty())
                     event.advice = calibrationAdvice(device, plan_->stable_stiffness, began);
+                else
+                    event.advice = apparatus.deviceNotReady(false);
                 listener_(event);
             }
             told = state;
@@ -269,6 +277,7 @@ private:
     const session::SessionListener& listener_;
     store::Store& store_;
     std::string sha256_;
+    UnitRack& rack_;
     std::optional<LoopApparatus> apparatus_;
 };
 
@@ -328,21 +337,37 @@ bool isPerson(const std::string& code) {
     return kind && *kind != plan::ParticipantKind::Simulated;
 }
 
+/// Somebody takes part, whoever the code or the performer says.
+bool isForPerson(const std::string& code, const RunOptions& options) {
+    return isPerson(code) ||
+           (options.performer != nullptr && options.performer->kind() != plan::ParticipantKind::Simulated);
+}
+
 /// Nobody is there to take part under this code: a person needs a device that a person can move.
-bool lacksDevice(const std::string& code, const Performer* performer) {
+bool lacksDevice(const std::string& code, const RunOptions& options) {
     if (!isPerson(code)) return false;
-    return performer == nullptr || performer->kind() != plan::kindOfCode(code);
+    if (options.performer == nullptr) return !options.real.anyReal();
+    return options.performer->kind() != plan::kindOfCode(code);
 }
 
 /// Why nobody but a simulated participant can run the plan here under this code; empty: somebody can, or is simulated.
-Errors whyNotPeople(const plan::StudyPlan& plan, const std::string& code, const Performer* performer) {
-    const bool person =
-        isPerson(code) || (performer != nullptr && performer->kind() != plan::ParticipantKind::Simulated);
+Errors whyNotPeople(const plan::StudyPlan& plan, const std::string& code, const RunOptions& options) {
     Errors why;
-    if (person) why = missingOutputs(plan, code.empty() ? "a person" : code);
-    if (lacksDevice(code, performer))
+    if (isForPerson(code, options)) why = missingOutputs(plan, code.empty() ? "a person" : code);
+    if (lacksDevice(code, options))
         for (Error& missing : missingDevices(plan, code)) why.push_back(std::move(missing));
     return why;
+}
+
+/// The station's real devices, if a person takes part who holds them. Errors: one is not there, or none for this plan.
+Result<UnitRack> rackFor(const plan::StudyPlan& plan, const std::string& code, const RunOptions& options) {
+    if (!isForPerson(code, options) || !options.real.anyReal()) return UnitRack{};
+    if (options.clock != Clock::RealTime)
+        return Error{.message = "real devices run in real time: add --real-time", .file = options.real.file};
+    auto rack = UnitRack::open(options.real.devices, options.real.file);
+    if (!rack) return rack;
+    if (Errors why = rack->whyNot(plan); !why.empty()) return why;
+    return rack;
 }
 
 /// Elsewhere the session would take a slot that is not its station's.
@@ -356,11 +381,16 @@ Error otherStation(const store::Unfinished& session, const RunOptions& options) 
 }
 
 Result<RunEnd> runSessions(const plan::StudyPlan& draft, RunOptions options, const session::SessionListener& listener) {
-    if (Errors why = whyNotPeople(draft, options.participant, options.performer); !why.empty()) return why;
+    if (Errors why = whyNotPeople(draft, options.participant, options); !why.empty()) return why;
     if (Errors unstable = beyondBorder(draft, knownDevices()); !unstable.empty()) return unstable;
     const auto language = plan::chooseLanguage(draft, options.language);
     if (!language) return language.errors();
     options.language = *language;
+    auto rack = rackFor(draft, options.participant, options);
+    if (!rack) return rack.errors();
+    std::optional<AtDevice> at_device;
+    if (!rack->empty() && options.performer == nullptr)
+        options.performer = &at_device.emplace(*plan::kindOfCode(options.participant), options.answers, options.reader);
     // A calibration that fails must leave nothing behind: neither a new database nor the protocol in an old one.
     std::vector<store::AccuracyRow> measured;
     const auto measure = [&]() -> Result<Done> {
@@ -412,7 +442,7 @@ Result<RunEnd> runSessions(const plan::StudyPlan& draft, RunOptions options, con
         for (const std::string& difference : stiffnessDifferences(draft.stable_stiffness, (*plan)->stable_stiffness))
             listener(session::Warned{difference});
     if (Errors unstable = beyondBorder(**plan, knownDevices()); !unstable.empty()) return unstable;
-    StudyRun run(*plan, options, listener, *opened.store, *sha256);
+    StudyRun run(*plan, options, listener, *opened.store, *sha256, *rack);
     Result<RunEnd> end = RunEnd::Complete;
     for (int i = 0; i < options.simulated && end && *end == RunEnd::Complete; ++i) end = run.participant(i + 1);
     backUp(*opened.store, options, listener);
@@ -435,11 +465,17 @@ Result<RunEnd> resumeSession(const ResumeOptions& resume, RunOptions options,
     if (!kept) return kept.errors();
     const auto plan = freeze(*draft, *kept, {.seed = session->seed}, options.import_limits);
     if (!plan) return plan.errors();
-    if (Errors why = whyNotPeople(**plan, session->participant, options.performer); !why.empty()) return why;
+    if (Errors why = whyNotPeople(**plan, session->participant, options); !why.empty()) return why;
     if (Errors unstable = beyondBorder(**plan, knownDevices()); !unstable.empty()) return unstable;
     options.clock = session->virtual_time ? Clock::Virtual : Clock::RealTime;
     options.language = session->language;
-    StudyRun run(*plan, options, listener, *opened.store, session->protocol_sha256);
+    auto rack = rackFor(**plan, session->participant, options);
+    if (!rack) return rack.errors();
+    std::optional<AtDevice> at_device;
+    if (!rack->empty() && options.performer == nullptr)
+        options.performer =
+            &at_device.emplace(*plan::kindOfCode(session->participant), options.answers, options.reader);
+    StudyRun run(*plan, options, listener, *opened.store, session->protocol_sha256, *rack);
     const auto end = run.resume(*session);
     backUp(*opened.store, options, listener);
     return end;

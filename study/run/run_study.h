@@ -10,6 +10,7 @@
 #include "study/run/log/study_log.h"
 #include "study/run/loop_apparatus.h"
 #include "study/run/person/taking_part.h"
+#include "study/run/units/station_devices.h"
 #include "study/session/session.h"
 #include "study/store/write/store.h"
 
@@ -36,6 +37,7 @@ struct RunOptions {
     ImportLimits import_limits;                       // of every mesh file
     BuildWatch told;                                  // what of a part is being built
     StudyLog* log = nullptr;                          // of the database; null: none is kept
+    StationDevices real;                              // devices of this station, which people hold
     bool warns = false;  // looks for what is unusual and tells of it (session::Warned); else nothing is looked for
 };
 
@@ -45,12 +47,13 @@ enum class RunEnd { Complete, Interrupted };
 /// While a session runs, an experimenter may command it through CommandSocket.
 /// Performs the study, as freeze() makes it of its draft, with simulated participants on the simulated device, each a
 /// session of all planned trials, into the database; a participant whose code is that of a person is refused, for want
-/// of a device, unless the performer brings one for a participant of that kind. Questionnaires may be answered by
-/// somebody all the same: that is a rehearsal, and its data is marked simulated. Whatever was finished before an error
-/// stays in it. An interruption stores the running trial as aborted and closes the session as aborted, both with the
-/// reason "interrupted". What contact.accuracy = "auto" asks for is picked when the protocol first runs in this
-/// database, and kept there; before later runs in real time a machine that is too slow for it is warned of. Errors
-/// before anything is stored: a language that is none of plan::languagesOf(draft).
+/// of a device, unless the performer brings one for a participant of that kind, or the station has real ones: people
+/// hold these, in real time, as long as sessions run. Questionnaires may be answered by somebody all the same: that is
+/// a rehearsal, and its data is marked simulated. Whatever was finished before an error stays in it. An interruption
+/// stores the running trial as aborted and closes the session as aborted, both with the reason "interrupted". What
+/// contact.accuracy = "auto" asks for is picked when the protocol first runs in this database, and kept there; before
+/// later runs in real time a machine that is too slow for it is warned of. Errors before anything is stored: a language
+/// that is none of plan::languagesOf(draft).
 Result<RunEnd> runStudy(const plan::StudyPlan& draft, RunOptions options, const session::SessionListener& listener);
 
 struct ResumeOptions {

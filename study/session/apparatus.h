@@ -63,6 +63,13 @@ struct LoopHealth {
     Delivered delivered;
 };
 
+/// Something that happened to a device that lives as long as the session.
+struct DeviceNews {
+    std::string event;  // name and payload in the data
+    std::string payload_json;
+    std::string loss;  // why what runs on the device is over, for people; empty: it is not
+};
+
 /// One stage of the tick and why it runs, or does not.
 struct StageNote {
     std::string name;
@@ -119,6 +126,15 @@ public:
     /// started meanwhile. From any thread.
     virtual void halt() = 0;
     virtual void rearm() = 0;
+
+    /// What happened to the devices since the last call, each once.
+    virtual std::vector<DeviceNews> takeDeviceNews() { return {}; }
+    /// Which device is not ready for a trial, and why; empty: all are. `or_there`: one that rearm() can make ready will
+    /// do.
+    virtual std::string deviceNotReady(bool or_there) const {
+        static_cast<void>(or_there);
+        return {};
+    }
 };
 
 }  // namespace passung::session

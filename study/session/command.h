@@ -55,6 +55,7 @@ enum class WhyNot {
     UnknownAttempt,
     CountsNot,     // the attempt, anyway
     CannotBeKept,  // the data's fault
+    DeviceAway,    // a device is not there
 };
 
 struct Command {

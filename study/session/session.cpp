@@ -109,7 +109,7 @@ void Session::interrupt(const std::string& reason) {
 SessionState Session::advance() {
     switch (state()) {
         case SessionState::BetweenTrials:
-            if (asksQuestionnaire()) break;
+            if (losesDevice() || asksQuestionnaire()) break;
             if (agenda_.empty()) {
                 if (!instructions_.show(nullptr, session_ns_)) finish(Complete{});
             } else if (!rest() && !swapsDevice() && !instructions_.show(&trial(), session_ns_)) {
@@ -120,8 +120,10 @@ SessionState Session::advance() {
             watchTrial();
             break;
         case SessionState::Ready:
-        case SessionState::Preparing:
         case SessionState::Paused:
+            keepDeviceNews();
+            break;
+        case SessionState::Preparing:
         case SessionState::Complete:
         case SessionState::Failed:
         case SessionState::Interrupted:
@@ -186,6 +188,7 @@ void Session::watchTrial() {
         if (const auto said = setup_.timer->commandAt(attempt().clock.periods())) static_cast<void>(command(*said));
     apparatus_.advance(kTicksPerPoll);
     attempt().silent_polls = takeRecords() > 0 ? 0 : attempt().silent_polls + 1;
+    if (losesDevice()) return;
     const bool silent = attempt().silent_polls >= kSilentPolls && !attempt().course.ended();
     if (silent) {
         std::vector<TrialEvent> events;
@@ -199,6 +202,29 @@ void Session::watchTrial() {
         error.message = "the haptic loop delivers no records";
         fail("loop", {error});
     }
+}
+
+/// Keeps what happened to the devices; why the first of them that was lost was; empty: none was.
+std::string Session::keepDeviceNews() {
+    std::string loss;
+    for (const DeviceNews& news : apparatus_.takeDeviceNews()) {
+        Event event{.attempt = {}, .t_ns = now(), .source = "device", .event = news.event};
+        if (running()) event.attempt = running()->id;
+        event.payload_json = news.payload_json;
+        sink_.appendEvent(event);
+        if (loss.empty()) loss = news.loss;
+    }
+    return loss;
+}
+
+/// True: a device is not ready, so that the session is paused.
+bool Session::losesDevice() {
+    std::string loss = keepDeviceNews();
+    if (!running()) loss = apparatus_.deviceNotReady(false);  // what was armed again meanwhile is no loss any more
+    if (loss.empty()) return false;
+    if (running()) abortRunning("device " + loss, Then::RepeatNow, Decider::Interruption);
+    pauseHere();
+    return true;
 }
 
 /// Takes all that the apparatus holds; how many records there were.

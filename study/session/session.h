@@ -48,8 +48,10 @@ public:
     /// experimenter ends the rest), have another device than the last trial's put in place
     /// (events swap_device and device_swapped; between them a session whose setup waits for commands is Paused until
     /// the experimenter says Continue), look whether the instructions before the next trial are read, begin it, watch
-    /// the running one for kTicksPerPoll, or close the session; nothing in Ready and Paused. Whatever is to be done to
-    /// a session from outside is done between two calls.
+    /// the running one for kTicksPerPoll, or close the session; nothing in Ready and Paused but to keep what happens to
+    /// devices. Whatever is to be done to a session from outside is done between two calls. A device that is lost ends
+    /// the running attempt, which does not count and whose trial is done again, and the session is Paused until
+    /// Continue, which arms it anew.
     SessionState advance();
 
     /// What an experimenter wants, between two calls of advance(). Every command is logged as an event "command_…",
@@ -152,6 +154,8 @@ private:
     void leaveOutNeedless();
     void beginTrial();
     void watchTrial();
+    std::string keepDeviceNews();
+    bool losesDevice();
     bool asksQuestionnaire();
     std::size_t takeRecords();
     void takeOtherHands();

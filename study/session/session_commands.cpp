@@ -52,6 +52,8 @@ Permission Session::permissionByState(const Command& command) const {
             return {WhyNot::NoTrial, "no trial runs that the experimenter times"};
         case CommandKind::Continue:
             if (!is<Paused>()) return {WhyNot::NotPaused, "the session is not paused"};
+            if (const std::string away = apparatus_.deviceNotReady(true); !away.empty())
+                return {WhyNot::DeviceAway, away};
             break;
         case CommandKind::Pause:
             if (is<Ready>()) return {WhyNot::NotBegun, "the session has not begun"};

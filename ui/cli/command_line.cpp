@@ -107,6 +107,7 @@ private:
                       "run at 1 kHz by the clock instead of as fast as the machine goes");
         sub->add_option("--seed", run_.seed, "seed instead of the protocol's")->check(wholeUnsigned());
         addStation(sub, run_.station);
+        addStationFile(sub, run_.station_file);
         addGroup(sub, run_.group);
         sub->add_flag("--no-backup", run_.no_backup, "leave out the copy DB.backup and its SHA-256 at the end");
         addAnswers(sub, run_.answers);
@@ -140,6 +141,13 @@ private:
                [&limits](double mebibytes) { limits.memory = static_cast<std::uintmax_t>(mebibytes) << 20; },
                "most memory to read a mesh file; default 1024; at least 16 times the file")
             ->check(between(64.0, 1048576.0, "a number from 64 to 1048576"));
+    }
+
+    static void addStationFile(CLI::App* sub, std::string& file) {
+        sub->add_option("--station-file", file,
+                        "file that says which real devices serve here; people hold them, with --real-time. Default: "
+                        "station.toml in the folder of the user's data, if it is there")
+            ->check(CLI::ExistingFile);
     }
 
     static void addStation(CLI::App* sub, StationArguments& options) {
@@ -218,6 +226,7 @@ private:
         sub->add_option("--meshes", resume_.meshes, "folder of the mesh files, as of replay")
             ->check(CLI::ExistingDirectory);
         addStation(sub, resume_.station);
+        addStationFile(sub, resume_.station_file);
         addAnswers(sub, resume_.answers);
         sub->add_flag("--no-backup", resume_.no_backup, "leave out the copy, as of run");
         sub->add_option("--acknowledge-fd", resume_.acknowledge_fd, "file descriptor for a line per durable attempt");
@@ -417,6 +426,11 @@ private:
         sub->add_option("--db", doctor_.databases,
                         "databases whose logs (DB.log) the report takes; default: all here and the windows'")
             ->needs(report);
+        addStationFile(sub, doctor_.station_file);
+        sub->add_option("--write-station", doctor_.write_station,
+                        "station file to write with the real devices that were found, without a loop check; one that "
+                        "is there already is left as it is")
+            ->excludes(device);
         sub->add_flag("--find-stiffness", doctor_.find_stiffness,
                       "find the stiffest wall that the device bears while nobody holds it, and keep it as this user's "
                       "calibration: a stiffness \"max\" then stands for it")

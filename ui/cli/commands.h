@@ -46,6 +46,7 @@ struct RunArguments {
     bool wait = false;  // for `passung session start`
     std::optional<std::uint64_t> seed;
     StationArguments station;
+    std::string station_file;  // that chooses real devices; empty: the user's
     bool no_backup = false;
     bool group = false;
     int acknowledge_fd = -1;            // open file descriptor that gets a line per durable attempt
@@ -60,6 +61,7 @@ struct ResumeArguments {
     std::string session;  // id; empty: the newest one that did not complete
     std::string meshes;   // folder that the protocol's mesh paths start from; empty: here, else beside the database
     StationArguments station;
+    std::string station_file;  // as of RunArguments
     bool no_backup = false;
     int acknowledge_fd = -1;  // as of RunArguments
     std::string answers = "simulated";
@@ -236,6 +238,8 @@ struct DoctorArguments {
     bool find_stiffness = false;         // of the device, and keep it
     std::string report;                  // file that gets all this and the logs; empty: none
     std::vector<std::string> databases;  // whose logs; empty: those that run::loggedDatabases() finds
+    std::string station_file;            // where to look for real devices; empty: the user's
+    std::string write_station;           // file that gets the devices that were found; empty: none
 };
 int doctor(const DoctorArguments& options);
 

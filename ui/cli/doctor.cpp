@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <string_view>
 
+#include "study/protocol/station/station_file.h"
+#include "study/run/files/data_folder.h"
 #include "study/run/files/known_names.h"
 #include "study/run/log/discreet.h"
 #include "study/run/log/study_log.h"
@@ -12,6 +15,8 @@
 #include "study/run/machine/host.h"
 #include "study/run/machine/loop_check.h"
 #include "study/run/machine/stability_report.h"
+#include "study/run/units/station_devices.h"
+#include "study/run/units/unit_report.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 
@@ -54,8 +59,21 @@ std::string devicesText(const std::string& device) {
         if (device.empty() || d.name == device) text += deviceText(d);
     return text +
            "  none: no stiffness has it at that damping; a \"max\" above the border was found on the device, where dry "
-           "friction and the hand damp what the model leaves free\n"
-           "  real        none: this version has drivers for simulated devices only\n";
+           "friction and the hand damp what the model leaves free\n";
+}
+
+/// The station file with all real devices that were found.
+int writeStation(const std::string& path, const std::vector<DeviceChoice>& found) {
+    std::error_code none;
+    if (std::filesystem::exists(path, none))
+        return fail({{.message = "is there already and is left as it is: name another file", .file = path}});
+    if (found.empty()) return fail({{.message = "no real device was found: nothing to write", .file = path}});
+    OutputFile file(path);
+    file.write(protocol::stationFileText(found));
+    if (const auto done = file.commit(); !done) return fail(done.errors());
+    fmt::print("station file: {}: {} device{}; `passung run --station-file` takes it, or keep it as {}\n", path,
+               found.size(), found.size() == 1 ? "" : "s", (run::dataFolder() / "station.toml").string());
+    return 0;
 }
 
 int findStiffness(const simulated::DeviceParams& device) {
@@ -141,7 +159,14 @@ int doctor(const DoctorArguments& options) {
         print(devicesText(options.device));
         return 0;
     }
-    std::string said = versionsText() + devicesText("") + displayText();
+    const auto station = run::stationDevices(options.station_file);
+    if (!station) return fail(station.errors());
+    const run::UnitReport real = run::lookForUnits(station->devices);
+    if (!options.write_station.empty()) {
+        print(real.text);
+        return writeStation(options.write_station, real.found);
+    }
+    std::string said = versionsText() + devicesText("") + real.text + displayText();
     said += fmt::format("loop check: {:.0f} s\n", options.seconds);
     print(said);
     const std::string loop = loopText(run::checkLoop(options.seconds));

@@ -101,7 +101,9 @@ public:
     }
     void operator()(const session::SessionWaits& waits) {
         progress_.show("");
-        if (const std::string& device = waits.view.awaited_device; !device.empty())
+        const std::string& device = waits.view.awaited_device;
+        if (device.empty() && !waits.advice.empty()) fmt::print("{}: {}\n", participant_, waits.advice);
+        if (!device.empty())
             fmt::print("{}: the next trial is on {}: put it in place{}{}\n", participant_, device,
                        waits.advice.empty() ? "" : "; ", waits.advice);
         fmt::print("{}: {}\n", participant_,
@@ -205,6 +207,9 @@ int run(const RunArguments& options) {
 
     what.language = options.language;
     what.import_limits = options.import_limits;
+    auto real = run::stationDevices(options.station_file);
+    if (!real) return fail(real.errors());
+    what.real = *std::move(real);
     return tell(options.protocol, what, options.acknowledge_fd, options.answers,
                 [&](const auto& with, const auto& listener) { return run::runStudy(*plan, with, listener); });
 }
@@ -217,6 +222,9 @@ int resume(const ResumeArguments& options) {
     what.station = *station;
     what.backup = !options.no_backup;
     what.import_limits = options.import_limits;
+    auto real = run::stationDevices(options.station_file);
+    if (!real) return fail(real.errors());
+    what.real = *std::move(real);
     return tell(options.database, what, options.acknowledge_fd, options.answers,
                 [&](const auto& with, const auto& listener) {
                     return run::resumeStudy({options.session, options.meshes}, with, listener);

@@ -12,6 +12,7 @@
 
 #include "devices/mouse/mouse_device.h"
 #include "study/plan/scene_parts.h"
+#include "study/run/units/station_devices.h"
 #include "study/session/secondary.h"
 
 namespace passung::window {
@@ -105,6 +106,11 @@ Result<run::RunEnd> LiveSession::perform(const session::SessionListener& listene
     run.interrupted = [this] { return ends_.load(); };
     if (!options_.try_out && kind() != plan::ParticipantKind::Simulated)
         run.ask_consent = [this](const auto& clause, const std::string& text) { return askConsent(clause, text); };
+    if (options_.hand == LiveHand::Mouse && !options_.try_out) {  // in whose place a real device is held
+        auto real = run::stationDevices({});
+        if (!real) return real.errors();
+        run.real = *std::move(real);
+    }
     if (options_.resume.empty()) return run::runStudy(plan_, run, listener);
     const auto folder = std::filesystem::path(plan_.source_path).parent_path();
     return run::resumeStudy({options_.resume, folder.string()}, run, listener);

@@ -33,6 +33,13 @@ std::vector<std::string> readArray(const Database& database, const std::string& 
     return items;
 }
 
+/// What the runs of a session say of their real devices, each once, in order: a list in JSON.
+std::string ofUnits(const char* key) {
+    return std::string("(SELECT json_group_array(v) FROM (SELECT json_extract(u.value, '$.") + key +
+           "') AS v, min(n.segment_id * 100 + u.key) AS at FROM segment n, json_each(n.device_json, '$.units') u "
+           "WHERE n.session_id=s.session_id GROUP BY v ORDER BY at))";
+}
+
 /// Makes the columns of a session; those of its devices are read by `database`.
 Selection<SessionRow> sessionColumns(const Database& database) {
     using Row = SessionRow;
@@ -48,6 +55,10 @@ Selection<SessionRow> sessionColumns(const Database& database) {
              }},
             {"(SELECT min(json_extract(n.device_json, '$.simulated')) FROM segment n WHERE n.session_id=s.session_id)",
              &Row::device_simulated},
+            {ofUnits("backend"), [&database](const Statement& row, int column,
+                                             Row& to) { to.device_backends = readArray(database, row.text(column)); }},
+            {ofUnits("serial"), [&database](const Statement& row, int column,
+                                            Row& to) { to.device_serials = readArray(database, row.text(column)); }},
             {"s.experimenter", &Row::experimenter},
             {"s.language", &Row::language},
             {"s.seed", &Row::seed},

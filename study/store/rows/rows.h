@@ -188,8 +188,9 @@ struct SessionRow {
     std::string kind;
     std::int64_t ordinal = 1;
     std::string station;
-    std::vector<std::string> segment_devices;  // that each run of the program began with, in order
-    bool device_simulated = true;              // all of them
+    std::vector<std::string> segment_devices;                  // that each run of the program began with, in order
+    bool device_simulated = true;                              // all of them
+    std::vector<std::string> device_backends, device_serials;  // of its real devices, each once; none: simulated
     std::optional<std::string> experimenter;
     std::string language;
     std::uint64_t seed = 0;

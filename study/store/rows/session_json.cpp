@@ -18,9 +18,21 @@ std::string mechanismJson(const DeviceMechanism& m) {
         .str();
 }
 
+std::string unitJson(const DeviceUnit& unit) {
+    return JsonObject()
+        .text("hand", unit.hand)
+        .text("kind", unit.kind)
+        .text("backend", unit.backend)
+        .text("serial", unit.serial)
+        .text("model", unit.model)
+        .text("versions", unit.versions)
+        .text("calibration", unit.calibration)
+        .str();
+}
+
 }  // namespace
 
-std::string deviceJson(const DeviceDescription& device) {
+std::string deviceJson(const DeviceDescription& device, std::span<const DeviceUnit> units) {
     JsonObject json;
     json.text("name", device.name).text("label", device.label).boolean("simulated", device.simulated);
     json.boolean("stands_for_preset", device.stands_for_preset);
@@ -35,6 +47,9 @@ std::string deviceJson(const DeviceDescription& device) {
     json.number("recommended_rotational_damping_Nms_per_rad", device.recommended_rotational_damping_Nms_per_rad);
     json.text("stability_source", device.stability_source);
     json.json("mechanism", device.mechanism ? mechanismJson(*device.mechanism) : "null");
+    std::vector<std::string> items;
+    for (const DeviceUnit& unit : units) items.push_back(unitJson(unit));
+    if (!items.empty()) json.json("units", jsonList(items));
     return json.str();
 }
 

@@ -128,7 +128,7 @@ std::int64_t insertStream(const Database& database, std::int64_t segment_id, con
 /// A part of a session that one run of the program makes; from session time `begin_ns` on.
 SessionWriter::Rows insertSegment(const Database& database, const SessionStart& start, const OpenOptions& options,
                                   std::int64_t begin_ns) {
-    const std::string device = deviceJson(start.device);
+    const std::string device = deviceJson(start.device, start.units);
     database
         .prepare(
             "INSERT INTO segment(session_id, app_version, host, device_json, mono_zero_ns, utc_zero, started_utc) "

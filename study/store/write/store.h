@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/device_description.h"
+#include "core/base/device_unit.h"
 #include "core/base/random.h"
 #include "core/base/result.h"
 #include "study/design/trial_order.h"
@@ -45,7 +46,8 @@ struct SessionStart {
     std::string random_name = kRandomName;
     UtcClock clock = UtcClock::virtualEpoch();
     DeviceDescription device;
-    std::string host;  // description of the machine; leave empty in virtual time
+    std::vector<DeviceUnit> units = {};  // real ones that the session is performed on; none: simulated
+    std::string host;                    // description of the machine; leave empty in virtual time
     std::int64_t mono_zero_ns = 0;
     bool timing_measured = false;  // a real clock runs: store every tick's computing time too
     int numerics = 0;              // core/tick/numerics.h: which arithmetic the ticks follow

@@ -48,5 +48,20 @@ TEST(SessionJson, ADeviceSaysWhatItsMechanismIs) {
     EXPECT_EQ(extract(deviceJson(device), "$.max_force_N"), "null");
 }
 
+TEST(SessionJson, ARealDeviceSaysWhichUnitItIs) {
+    // Truth: independent program (SQLite's JSON functions read what was written); a simulated one has no such key.
+    EXPECT_EQ(extract(deviceJson({}), "$.units"), "null");
+    const DeviceUnit unit{"right", "sigma7", "dhd", fake::kHardText, "sigma.7", "3.17", "axes x y z"};
+    const std::string json = deviceJson({}, std::vector{unit, DeviceUnit{.serial = "2"}});
+    EXPECT_EQ(extract(json, "$.units[0].hand"), "right");
+    EXPECT_EQ(extract(json, "$.units[0].kind"), "sigma7");
+    EXPECT_EQ(extract(json, "$.units[0].backend"), "dhd");
+    EXPECT_EQ(extract(json, "$.units[0].serial"), fake::kHardText);
+    EXPECT_EQ(extract(json, "$.units[0].model"), "sigma.7");
+    EXPECT_EQ(extract(json, "$.units[0].versions"), "3.17");
+    EXPECT_EQ(extract(json, "$.units[0].calibration"), "axes x y z");
+    EXPECT_EQ(extract(json, "$.units[1].serial"), "2");
+}
+
 }  // namespace
 }  // namespace passung::store

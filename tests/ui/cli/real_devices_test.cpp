@@ -1,0 +1,311 @@
+// Studies on real devices, run by the program itself against fakes of what serves them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "study/store/read/store_reader.h"
+#include "tests/devices/fakes/haply_service.h"
+#include "tests/devices/fakes/space_mouse_daemon.h"
+#include "tests/ui/cli/program.h"
+
+namespace passung::test {
+namespace {
+
+/// A peg in a hole, four trials of some seconds, on a device of that kind. What a busy machine loses of them is not
+/// done again: an attempt that lacks a sample does not count.
+std::string pegInHole(const std::string& device, bool kinesthetic) {
+    return R"(passung = 1
+[study]
+name = "peg_in_hole_ci"
+version = "1.0"
+seed = 7
+participants = 1
+[scene]
+unit = "mm"
+[[scene.part]]
+name = "plate"
+shape = { kind = "bore_plate", width = 40, depth = 40, height = 12, bore_diameter = 22, bore_depth = 10, chamfer = 1 }
+[[scene.part]]
+name = "peg"
+held = true
+shape = { kind = "peg", diameter = 20, length = 20, chamfer = 1 }
+pose = { position = [0, 0, 8] }
+[scene.contact]
+method = "god_object"
+stiffness_N_per_m = 400
+[scene.device]
+)" + device +
+           R"(
+[scene.start_gate]
+position_tolerance_mm = 5
+angle_tolerance_deg = 10
+hold_ms = 20
+[feedback]
+kinesthetic = )" +
+           (kinesthetic ? "true" : "false") + R"(
+[task]
+type = "peg_in_hole"
+target = "plate"
+insertion_depth_mm = 6
+success_fraction = 0.9
+max_speed_mm_per_s = 20
+hold_s = 0.05
+timeout_s = 4
+leave_radius_mm = 2
+[[block]]
+name = "main"
+order = "listed"
+repetitions = 4
+on_invalid = "never"
+)";
+}
+
+/// A hand at the service: holds the start pose, goes down into the hole, rests there, and comes back, again and again.
+/// Its grip is a spring: it gives way to the force that the fake displays.
+class Hand {
+public:
+    explicit Hand(fake::HaplyService& service) : service_(service), thread_([this] { main(); }) {}
+    ~Hand() {
+        stop_ = true;
+        thread_.join();
+    }
+
+private:
+    void main() {
+        for (int ms = 0; !stop_; ++ms) {
+            const double t = 1e-3 * (ms % 1500);
+            const double way = std::clamp((t - 0.4) / 0.4, 0.0, 1.0) - std::clamp((t - 1.2) / 0.2, 0.0, 1.0);
+            const auto felt = service_.felt("049D");
+            fake::HaplyDeviceState state;
+            // The origin of the device's base is the cursor's of the documented example.
+            state.position = {felt[0] / 2000.0 + 1e-6 * (ms % 3), -0.12 + felt[1] / 2000.0,
+                              0.15 + 0.008 - 0.015 * way + felt[2] / 2000.0};
+            service_.setState("049D", state);
+            poll(nullptr, 0, 1);
+        }
+    }
+
+    fake::HaplyService& service_;
+    std::atomic<bool> stop_ = false;
+    std::thread thread_;
+};
+
+std::string stationOf(const fake::HaplyService& service) {
+    return "[station.device.right]\nkind = \"inverse3\"\nbackend = \"haply\"\nserial = \"049D\"\naddress = "
+           "\"localhost:" +
+           std::to_string(service.port()) + ":" + std::to_string(service.eventPort()) + "\"\n";
+}
+
+std::vector<store::AttemptRow> attemptsOf(const std::filesystem::path& database) {
+    const auto reader = store::StoreReader::open(database.string());
+    if (!reader) throw std::runtime_error("no database");
+    return *reader->attempts();
+}
+
+/// Why an attempt does not count; empty: it does, or the machine was too busy for it.
+std::string faultOf(const store::AttemptRow& attempt) {
+    const std::string why = attempt.invalid_reason.value_or("");
+    return why.starts_with("no usable device input") || why.starts_with("loop: ") ? "" : why;
+}
+
+std::vector<std::string> events(const std::filesystem::path& database, const std::string& kind) {
+    const auto reader = store::StoreReader::open(database.string());
+    std::vector<std::string> found;
+    for (const auto& event : *reader->events())
+        if (event.event.starts_with(kind)) found.push_back(event.event);
+    return found;
+}
+
+/// The columns of a table, and how many rows it has.
+std::pair<std::string, std::size_t> shapeOf(const std::filesystem::path& csv) {
+    const auto lines = linesOf(readText(csv));
+    return {lines.front(), lines.size() - 1};
+}
+
+std::vector<std::string> filesOf(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+void exportTo(const TempFolder& folder, const std::string& database, const std::string& out) {
+    const Ended ended = runProgram(folder.path(), {"export", database, "--out", out});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+}
+
+TEST(RealDevices, AnInverse3RunsTheSameFileAsItsSimulationWithTheSameTables) {
+    // Truth: invariant: same files, columns and rows a trial. The fake's own account says that a force was felt.
+    const TempFolder folder;
+    fake::HaplyService service;
+    writeText(folder / "peg.toml", pegInHole("kind = \"inverse3\"", true));
+    writeText(folder / "station.toml", stationOf(service));
+    {
+        const Hand hand(service);
+        const Ended real = runProgram(folder.path(), {"run", "peg.toml", "--real-time", "--participant", "T001", "--db",
+                                                      "real.db", "--station-file", "station.toml"});
+        ASSERT_EQ(real.exit_code, 0) << real.out << real.err;
+    }
+    const auto attempts = attemptsOf(folder / "real.db");
+    ASSERT_EQ(attempts.size(), 4u);
+    for (const auto& attempt : attempts) {
+        EXPECT_EQ(faultOf(attempt), "");
+        EXPECT_EQ(attempt.device, "inverse3");
+        EXPECT_EQ(attempt.outcome, "success");
+    }
+    EXPECT_EQ(service.felt("049D"), (std::array<double, 3>{}));
+    EXPECT_EQ(service.violations(), 0);
+    EXPECT_EQ(service.misunderstood(), 0);
+    EXPECT_EQ(events(folder / "real.db", "device_"), (std::vector<std::string>{"device_present", "device_ready"}));
+
+    const Ended simulated = runProgram(folder.path(), {"run", "peg.toml", "--db", "simulated.db"});
+    ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
+    exportTo(folder, "real.db", "real");
+    exportTo(folder, "simulated.db", "simulated");
+    EXPECT_EQ(filesOf(folder.path() / "real"), filesOf(folder.path() / "simulated"));
+    for (const char* table : {"trials.csv", "sessions.csv"})
+        EXPECT_EQ(shapeOf(folder.path() / "real" / table), shapeOf(folder.path() / "simulated" / table)) << table;
+    const std::string sessions = readText(folder.path() / "real" / "sessions.csv");
+    EXPECT_NE(sessions.find("haply"), std::string::npos);
+    EXPECT_NE(sessions.find("049D"), std::string::npos);
+}
+
+TEST(RealDevices, ADevicePulledInContactPausesTheSessionWhichGoesOnWhenItIsBack) {
+    // Truth: invariant; the fake's own account of the force.
+    const TempFolder folder;
+    fake::HaplyService service;
+    writeText(folder / "peg.toml", pegInHole("kind = \"any\"\nleast_force_N = 3\nleast_degrees = 6", true));
+    writeText(folder / "station.toml", stationOf(service));
+    const Hand hand(service);
+    Program program(
+        folder.path(),
+        {"run", "peg.toml", "--real-time", "--participant", "T001", "--db", "s.db", "--station-file", "station.toml"},
+        true);
+    ASSERT_NE(program.nextAcknowledgement(), "");
+    service.unplug("049D");
+    ASSERT_NE(program.nextAcknowledgement(), "");
+    EXPECT_EQ(service.felt("049D"), (std::array<double, 3>{}));
+    const Ended early = runProgram(folder.path(), {"session", "continue", "s.db"});
+    EXPECT_NE(early.exit_code, 0);
+    EXPECT_NE((early.out + early.err).find("the Inverse3 049D was unplugged"), std::string::npos)
+        << early.out << early.err;
+    service.plug("049D");
+    Ended goes{};
+    for (int i = 0; i < 200; ++i) {
+        goes = runProgram(folder.path(), {"session", "continue", "s.db"});
+        if (goes.exit_code == 0) break;
+        poll(nullptr, 0, 50);
+    }
+    ASSERT_EQ(goes.exit_code, 0) << goes.out << goes.err;
+    while (program.nextAcknowledgement() != "") {
+    }
+    EXPECT_EQ(program.wait(), 0);
+    const auto attempts = attemptsOf(folder / "s.db");
+    ASSERT_EQ(attempts.size(), 5u);
+    int lost = 0;
+    for (const auto& attempt : attempts) {
+        const std::string why = faultOf(attempt);
+        if (why.starts_with("device right (haply 049D)"))
+            ++lost;
+        else
+            EXPECT_EQ(why, "");
+    }
+    EXPECT_EQ(lost, 1);
+    EXPECT_EQ(events(folder / "s.db", "device_lost").size(), 1u);
+}
+
+TEST(RealDevices, ASpaceMouseRunsTheSameFileAsItsSimulation) {
+    // Truth: invariant; independent program (spacenavd 1.1-1 of Debian).
+    if (!fake::SpaceMouseDaemon::installed()) GTEST_SKIP() << "no spacenavd is installed";
+    const TempFolder folder;
+    fake::SpaceMouseDaemon daemon(fake::SerialMouse::Model::Spaceball);
+    writeText(folder / "peg.toml", pegInHole("kind = \"spacemouse\"", false));
+    writeText(folder / "station.toml",
+              "[station.device.right]\nkind = \"spacemouse\"\nbackend = \"spacenavd\"\naddress = \"" +
+                  daemon.socket().string() + "\"\n");
+    std::atomic<bool> over = false;
+    std::thread hand([&] {  // pushes the cap down for a moment, again and again
+        for (int ms = 0; !over; ms += 10) {
+            if (ms % 800 == 0) daemon.mouse().move({0, -350, 0, 0, 0, 0});
+            if (ms % 800 == 160) daemon.mouse().move({0, 0, 0, 0, 0, 0});
+            poll(nullptr, 0, 10);
+        }
+    });
+    const Ended real = runProgram(folder.path(), {"run", "peg.toml", "--real-time", "--participant", "T001", "--db",
+                                                  "real.db", "--station-file", "station.toml"});
+    over = true;
+    hand.join();
+    ASSERT_EQ(real.exit_code, 0) << real.out << real.err;
+    const auto attempts = attemptsOf(folder / "real.db");
+    ASSERT_EQ(attempts.size(), 4u);
+    for (const auto& attempt : attempts) {
+        EXPECT_EQ(faultOf(attempt), "");
+        EXPECT_EQ(attempt.outcome, "success");
+    }
+    const Ended simulated = runProgram(folder.path(), {"run", "peg.toml", "--db", "simulated.db"});
+    ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
+    exportTo(folder, "real.db", "real");
+    exportTo(folder, "simulated.db", "simulated");
+    EXPECT_EQ(shapeOf(folder.path() / "real" / "trials.csv"), shapeOf(folder.path() / "simulated" / "trials.csv"));
+}
+
+TEST(RealDevices, AUnitThatIsWeakerThanItsKindIsRefusedWithTheReason) {
+    // Truth: invariant; the sentences name both numbers.
+    const TempFolder folder;
+    fake::HaplyService service;
+    std::string station = stationOf(service);
+    const auto run = [&](const std::string& device) {
+        writeText(folder / "peg.toml", pegInHole(device, true));
+        writeText(folder / "station.toml", station);
+        return runProgram(folder.path(), {"run", "peg.toml", "--real-time", "--participant", "T001", "--db", "x.db",
+                                          "--station-file", "station.toml"});
+    };
+    Ended ended = run("kind = \"sigma7\"");
+    EXPECT_EQ(ended.exit_code, 1);
+    EXPECT_NE(ended.err.find("the station's unit serves inverse3"), std::string::npos) << ended.err;
+    station.replace(station.find("inverse3"), 8, "sigma7");
+    ended = run("kind = \"sigma7\"");
+    EXPECT_NE(ended.err.find("it drives 3 degrees of 6 degrees"), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("it pushes with 8 N of 12 N"), std::string::npos) << ended.err;
+    ended = run("kind = \"any\"\nleast_force_N = 9");
+    EXPECT_NE(ended.err.find("it pushes with 8 N of 9 N"), std::string::npos) << ended.err;
+    ended = run("kind = \"any\"\nleast_force_N = 2\nleast_torque_Nm = 0.1");
+    EXPECT_NE(ended.err.find("it drives 3 degrees of 6 degrees"), std::string::npos) << ended.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "x.db")) << "nothing is stored";
+    service.unplug("049D");
+    ended = run("kind = \"any\"\nleast_force_N = 2");
+    EXPECT_NE(ended.err.find("the Inverse Service has no Inverse3"), std::string::npos) << ended.err;
+    EXPECT_EQ(service.felt("049D"), (std::array<double, 3>{}));
+}
+
+TEST(RealDevices, DoctorSaysWhatItFoundAndWritesTheStationFileThatRunTakes) {
+    // Truth: invariant.
+    const TempFolder folder;
+    fake::HaplyService service({"049D", "04A1"});
+    writeText(folder / "look.toml", stationOf(service) +
+                                        "[station.device.left]\nkind = \"spacemouse\"\nbackend = "
+                                        "\"spacenavd\"\naddress = \"/nonexistent/spnav.sock\"\n");
+    const Ended ended =
+        runProgram(folder.path(), {"doctor", "--station-file", "look.toml", "--write-station", "station.toml"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    EXPECT_NE(ended.out.find("found: inverse3, serial 049D, firmware 7.4.0"), std::string::npos) << ended.out;
+    EXPECT_NE(ended.out.find("not found: spacenavd does not run: nobody listens at /nonexistent/spnav.sock"),
+              std::string::npos)
+        << ended.out;
+    const std::string written = readText(folder / "station.toml");
+    EXPECT_NE(written.find("[station.device.right]\nkind = \"inverse3\"\nbackend = \"haply\"\nserial = \"049D\""),
+              std::string::npos)
+        << written;
+    EXPECT_NE(written.find("[station.device.left]\nkind = \"inverse3\"\nbackend = \"haply\"\nserial = \"04A1\""),
+              std::string::npos);
+    const Ended again =
+        runProgram(folder.path(), {"doctor", "--station-file", "look.toml", "--write-station", "station.toml"});
+    EXPECT_EQ(again.exit_code, 1);
+    EXPECT_EQ(readText(folder / "station.toml"), written) << "what is there is left as it is";
+}
+
+}  // namespace
+}  // namespace passung::test
