@@ -88,6 +88,9 @@ namespace {
     QT_TRANSLATE_NOOP("devices", "Novint Falcon (simulated)"),
     QT_TRANSLATE_NOOP("devices", "Wearable haptic interface, TU Berlin and DLR (simulated)"),
     QT_TRANSLATE_NOOP("devices", "3D Systems Touch, formerly Phantom Omni (simulated)"),
+    QT_TRANSLATE_NOOP("devices", "Haply Inverse3 with a grip (simulated)"),
+    QT_TRANSLATE_NOOP("devices", "3Dconnexion SpaceMouse (simulated)"),
+    QT_TRANSLATE_NOOP("devices", "Any device (simulated)"),
 };
 
 }  // namespace

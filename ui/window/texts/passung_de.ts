@@ -1298,6 +1298,18 @@
         <source>3D Systems Touch, formerly Phantom Omni (simulated)</source>
         <translation>3D Systems Touch, früher Phantom Omni (simuliert)</translation>
     </message>
+    <message>
+        <source>Haply Inverse3 with a grip (simulated)</source>
+        <translation>Haply Inverse3 mit Griff (simuliert)</translation>
+    </message>
+    <message>
+        <source>3Dconnexion SpaceMouse (simulated)</source>
+        <translation>3Dconnexion SpaceMouse (simuliert)</translation>
+    </message>
+    <message>
+        <source>Any device (simulated)</source>
+        <translation>Beliebiges Gerät (simuliert)</translation>
+    </message>
 </context>
 <context>
     <name>measures</name>
