@@ -213,6 +213,9 @@ QString whyNot(Why why) {
             return said(QT_TRANSLATE_NOOP("words", "The attempt does not count anyway."));
         case Why::CannotBeKept:
             return said(QT_TRANSLATE_NOOP("words", "It cannot be stored."));
+        case Why::DeviceAway:
+            return said(
+                QT_TRANSLATE_NOOP("words", "The device is gone: plug it in, and look whether its service runs."));
         case Why::NoTrial:
             break;
     }

@@ -2753,6 +2753,10 @@
         <translation>Es lässt sich nicht speichern.</translation>
     </message>
     <message>
+        <source>The device is gone: plug it in, and look whether its service runs.</source>
+        <translation>Das Gerät ist weg: einstecken und nachsehen, ob sein Dienst läuft.</translation>
+    </message>
+    <message>
         <source>The session is paused.</source>
         <translation>Die Sitzung ist angehalten.</translation>
     </message>
