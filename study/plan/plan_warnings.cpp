@@ -147,4 +147,22 @@ std::vector<std::string> blockWarnings(const StudyPlan& plan, bool chosen_measur
     return warnings;
 }
 
+std::vector<std::string> thresholdWarnings(const StudyPlan& plan) {
+    std::vector<std::string> warnings;
+    for (const Staircase& staircase : plan.staircases) {
+        const bool analysed = std::any_of(plan.analyses.begin(), plan.analyses.end(),
+                                          [&](const Analysis& a) { return a.staircase == staircase.name; });
+        const bool steps = std::any_of(
+            staircase.tracks.begin(), staircase.tracks.end(),
+            [](const StaircaseTrack& track) { return track.params.method == design::AdaptiveMethod::UpDown; });
+        if (analysed && steps)
+            warnings.push_back(
+                fmt::format("analysis.staircase: up and down in steps a track may turn too rarely to tell a threshold, "
+                            "and whoever has none is left out of the analysis; rule = \"psi\" tells one after any "
+                            "number of trials; staircase: {}",
+                            staircase.name));
+    }
+    return warnings;
+}
+
 }  // namespace passung::plan

@@ -22,4 +22,7 @@ bool isForPeople(const StudyPlan& plan);
 /// `chosen_measures`: the protocol lists its measures itself.
 std::vector<std::string> blockWarnings(const StudyPlan& plan, bool chosen_measures);
 
+/// Such sentences about staircases whose thresholds are to be analysed.
+std::vector<std::string> thresholdWarnings(const StudyPlan& plan);
+
 }  // namespace passung::plan

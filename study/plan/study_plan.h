@@ -8,6 +8,7 @@
 
 #include "core/scene/scene_spec.h"
 #include "study/design/design.h"
+#include "study/plan/analysis.h"
 #include "study/plan/block.h"
 #include "study/plan/secondary_task.h"
 #include "study/plan/staircase.h"
@@ -111,15 +112,6 @@ struct PlannedQuestionnaire {
     std::string source_json;               // {"definition": text of `file`, "texts": text of `texts`}, byte for byte
 };
 
-/// What a study means to test, written down before the first participant.
-struct Analysis {
-    std::string outcome;               // a measure; empty: the thresholds of a staircase
-    std::vector<std::string> factors;  // names
-    std::string test;                  // "rm_anova" …
-    std::string block = {};            // whose trials; empty: every main block's that has the outcome, each by itself
-    std::string staircase = {};        // whose thresholds; empty: none
-};
-
 /// What a device displays stably, as the stiffnesses of a protocol were resolved against it.
 struct StableStiffness {
     std::string device;
@@ -157,6 +149,7 @@ struct StudyPlan {
     std::vector<Staircase> staircases;
     double max_session = 0.0;  // [s] that a session may take; 0: no limit
     std::vector<Analysis> analyses;
+    std::vector<DataRule> data_rules;
     std::vector<PlannedQuestionnaire> questionnaires;
     ResumePolicy resume;
     View view;

@@ -14,4 +14,12 @@ namespace passung::protocol {
 std::vector<plan::Analysis> readAnalyses(const std::vector<Node>& tables, const plan::StudyPlan& plan,
                                          const std::vector<std::string>& staircases, Errors& errors);
 
+/// Tells whether a table of `exclude` is a rule on recorded values, no combination of levels.
+bool isDataRule(const Node& table);
+/// Reads those of `exclude` that are.
+std::vector<plan::DataRule> readDataRules(const std::vector<Node>& tables, const plan::StudyPlan& plan, Errors& errors);
+
+/// What is wrong with the scales that analyses and rules name, once the questionnaires are loaded.
+Errors checkScales(const plan::StudyPlan& plan, const std::vector<plan::PlannedQuestionnaire>& questionnaires);
+
 }  // namespace passung::protocol

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "study/design/trial_order.h"
+#include "study/protocol/analysis_reader.h"
 #include "study/protocol/session_rules.h"
 #include "study/protocol/table_reader.h"
 
@@ -224,7 +225,8 @@ bool matches(const LevelPattern& pattern, const std::vector<std::size_t>& levels
 std::vector<LevelPattern> readExclusions(const std::vector<Node>& tables, const std::vector<plan::Factor>& factors,
                                          Errors& errors) {
     std::vector<LevelPattern> exclusions;
-    for (const Node& table : tables) exclusions.push_back(readPattern(table, "exclude", factors, errors));
+    for (const Node& table : tables)
+        if (!isDataRule(table)) exclusions.push_back(readPattern(table, "exclude", factors, errors));
     return exclusions;
 }
 

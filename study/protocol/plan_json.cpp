@@ -447,16 +447,43 @@ std::string questionnaireJson(const plan::PlannedQuestionnaire& planned) {
         .str();
 }
 
+std::string quoted(const std::string& text) { return jsonText(text); }
+
+std::string contrastJson(const plan::Contrast& contrast) {
+    return JsonObject()
+        .text("factor", contrast.factor)
+        .text("level", contrast.level)
+        .text("against", contrast.against)
+        .str();
+}
+
 std::string analysisJson(const plan::Analysis& analysis) {
     std::vector<std::string> factors;
     for (const auto& factor : analysis.factors) factors.push_back(jsonText(factor));
-    return JsonObject()
-        .text("outcome", analysis.outcome)
+    JsonObject json;
+    json.text("outcome", analysis.outcome)
         .json("factors", jsonList(factors))
         .text("test", analysis.test)
         .text("block", analysis.block)
-        .text("staircase", analysis.staircase)
-        .str();
+        .text("staircase", analysis.staircase);
+    if (!analysis.role.empty()) json.text("role", analysis.role);
+    if (!analysis.transform.empty()) json.text("transform", analysis.transform);
+    if (!analysis.covariates.empty()) json.json("covariates", listOf(analysis.covariates, quoted));
+    if (!analysis.contrasts.empty()) json.json("contrasts", listOf(analysis.contrasts, contrastJson));
+    if (analysis.equivalence_bounds)
+        json.json("equivalence_bounds",
+                  jsonNumbers({analysis.equivalence_bounds->first, analysis.equivalence_bounds->second}));
+    if (!analysis.family.empty()) json.text("family", analysis.family);
+    return json.str();
+}
+
+std::string dataRuleJson(const plan::DataRule& rule) {
+    JsonObject json;
+    json.text("data", rule.of_participants ? "participants" : "trials").text("value", rule.value);
+    if (rule.below) json.number("below", *rule.below);
+    if (rule.above) json.number("above", *rule.above);
+    if (!rule.reason.empty()) json.text("reason", rule.reason);
+    return json.str();
 }
 
 }  // namespace
@@ -507,8 +534,8 @@ std::string paramsJson(const plan::Condition& condition) {
 std::string expandedJson(const plan::StudyPlan& plan) {
     std::vector<std::string> staircases;
     for (const plan::Staircase& staircase : plan.staircases) staircases.push_back(staircaseJson(plan, staircase));
-    return JsonObject()
-        .text("name", plan.name)
+    JsonObject json;
+    json.text("name", plan.name)
         .text("version", plan.version)
         .text("title", plan.title)
         .json("seed", std::to_string(plan.seed))
@@ -534,8 +561,9 @@ std::string expandedJson(const plan::StudyPlan& plan) {
         .json("loop", JsonObject().number("max_missed_share", plan.max_missed_share).str())
         .json("view", plan::viewJson(plan.view))
         .json("stable_stiffness", listOf(plan.stable_stiffness, stableJson))
-        .json("measures", listOf(plan.measures, [](const std::string& name) { return jsonText(name); }))
-        .str();
+        .json("measures", listOf(plan.measures, quoted));
+    if (!plan.data_rules.empty()) json.json("data_rules", listOf(plan.data_rules, dataRuleJson));
+    return json.str();
 }
 
 }  // namespace passung::protocol

@@ -8,6 +8,7 @@
 
 #include "core/base/json.h"
 #include "study/plan/language.h"
+#include "study/protocol/analysis_reader.h"
 #include "study/protocol/plan_json.h"
 #include "study/protocol/questionnaire_reader.h"
 #include "study/protocol/questionnaire_texts.h"
@@ -154,6 +155,7 @@ Result<std::vector<plan::PlannedQuestionnaire>> load(const plan::StudyPlan& plan
     for (plan::PlannedQuestionnaire& planned : all)
         if (!planned.file.empty()) loader.load(planned);
     checkDistinct(plan, all, errors);
+    if (errors.empty()) errors = checkScales(plan, all);
     if (language.empty()) checkSlots(plan, all, errors);
     tidy(errors);
     if (!errors.empty()) return errors;

@@ -99,6 +99,7 @@ public:
         // A block may have another type of trial than the rest.
         plan_.measures = readMeasures(root_, tasks_sound_ ? &plan_ : nullptr, known_measures_, errors_);
         plan_.analyses = readAnalyses(root_.items("analysis"), plan_, staircaseNames(), errors_);
+        plan_.data_rules = readDataRules(root_.items("exclude"), plan_, errors_);
         if (expands && staircases_sound_) readStaircaseConditions();
         if (expands && tasks_sound_ && staircases_sound_ && errors_.empty() && root_.node("task") != nullptr)
             checkComparisons(plan_, *root_.node("task"), undoable_);
@@ -112,6 +113,7 @@ public:
             plan_.warnings = plan::conditionWarnings(std::span(plan_.conditions).first(plan::plannedConditions(plan_)));
             for (std::string& warning : plan::blockWarnings(plan_, root_.has("measures")))
                 plan_.warnings.push_back(std::move(warning));
+            for (std::string& warning : plan::thresholdWarnings(plan_)) plan_.warnings.push_back(std::move(warning));
             for (std::string& warning : restWarnings(plan_)) plan_.warnings.push_back(std::move(warning));
             for (std::string& warning : warnings_)
                 if (std::find(plan_.warnings.begin(), plan_.warnings.end(), warning) == plan_.warnings.end())
@@ -574,7 +576,9 @@ Examined examineProtocol(const std::string& path, std::span<const DeviceDescript
     add(namesOfQuestionnaires(all.plan));
     if (!sound) {
         add(checkQuestionnaires(all.plan, readFile));
-    } else if (!all.plan.questionnaires.empty()) {
+    } else if (all.plan.questionnaires.empty()) {
+        add(checkScales(all.plan, {}));
+    } else {
         if (const auto done = loadQuestionnaires(all.plan, readFile); !done) add(done.errors());
     }
     return all;

@@ -252,6 +252,10 @@ Result<std::vector<AnalysisRow>> StoreReader::analyses() const {
     return guarded(path_, [&] { return readAnalyses(*database_); });
 }
 
+Result<std::vector<DataRuleRow>> StoreReader::dataRules() const {
+    return guarded(path_, [&] { return readDataRules(*database_); });
+}
+
 Result<std::vector<NamedFileRow>> StoreReader::namedFiles() const {
     return guarded(path_, [&] { return readNamedFiles(*database_); });
 }

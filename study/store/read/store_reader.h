@@ -45,6 +45,7 @@ public:
     Result<std::vector<ConditionRow>> conditions() const;      // likewise
     Result<std::vector<PlannedCellRow>> plannedCells() const;  // by participant, session, block, then as listed
     Result<std::vector<AnalysisRow>> analyses() const;         // protocols as above, as listed
+    Result<std::vector<DataRuleRow>> dataRules() const;        // likewise
     Result<std::vector<NamedFileRow>> namedFiles() const;      // protocols as above, by kind and name
     Result<std::vector<QuestionnaireRow>> questionnaires() const;  // by key, version, language
     Result<std::vector<MeasureRow>> measures() const;

@@ -18,6 +18,16 @@ std::vector<std::string> readTexts(const Database& database, const std::string& 
     return texts;
 }
 
+std::vector<plan::Contrast> readContrasts(const Database& database, const std::string& json) {
+    std::vector<plan::Contrast> contrasts;
+    Statement each = database.prepare(
+        "SELECT json_extract(value, '$.factor'), json_extract(value, '$.level'), json_extract(value, '$.against') "
+        "FROM json_each(?)");
+    each.bind(json);
+    while (each.step()) contrasts.push_back({each.text(0), each.text(1), each.text(2)});
+    return contrasts;
+}
+
 }  // namespace
 
 std::vector<std::string> readMainBlocks(const Database& database, const std::string& expanded_json) {
@@ -76,18 +86,57 @@ std::vector<PlannedCellRow> readPlannedCells(const Database& database) {
 
 std::vector<AnalysisRow> readAnalyses(const Database& database) {
     using Row = AnalysisRow;
-    const Selection<Row> columns = {{"p.protocol_sha256", &Row::protocol_sha256},
-                                    {"a.key + 1", &Row::number},
-                                    {"json_extract(a.value, '$.outcome')", &Row::outcome},
-                                    {"json_extract(a.value, '$.staircase')", &Row::staircase},
-                                    {"json_extract(a.value, '$.block')", &Row::block},
-                                    {"json_extract(a.value, '$.factors')",
-                                     [&database](const Statement& row, int column, Row& to) {
-                                         to.factors = readTexts(database, row.text(column));
-                                     }},
-                                    {"json_extract(a.value, '$.test')", &Row::test}};
+    // What came later stands in a plan only where its protocol has it.
+    const Selection<Row> columns = {
+        {"p.protocol_sha256", &Row::protocol_sha256},
+        {"a.key + 1", &Row::number},
+        {"json_extract(a.value, '$.outcome')", &Row::outcome},
+        {"json_extract(a.value, '$.staircase')", &Row::staircase},
+        {"json_extract(a.value, '$.block')", &Row::block},
+        {"json_extract(a.value, '$.factors')",
+         [&database](const Statement& row, int column, Row& to) {
+             to.factors = readTexts(database, row.text(column));
+         }},
+        {"json_extract(a.value, '$.test')", &Row::test},
+        {"coalesce(json_extract(a.value, '$.role'), '')", &Row::role},
+        {"coalesce(json_extract(a.value, '$.transform'), '')", &Row::transform},
+        {"coalesce(json_extract(a.value, '$.family'), '')", &Row::family},
+        {"coalesce(json_extract(a.value, '$.covariates'), '[]')",
+         [&database](const Statement& row, int column, Row& to) {
+             to.covariates = readTexts(database, row.text(column));
+         }},
+        {"coalesce(json_extract(a.value, '$.contrasts'), '[]')",
+         [&database](const Statement& row, int column, Row& to) {
+             to.contrasts = readContrasts(database, row.text(column));
+         }},
+        {"json_extract(a.value, '$.equivalence_bounds[0]')",
+         [](const Statement& row, int column, Row& to) {
+             if (!row.isNull(column)) to.equivalence_bounds.emplace(row.real(column), 0.0);
+         }},
+        {"json_extract(a.value, '$.equivalence_bounds[1]')", [](const Statement& row, int column, Row& to) {
+             if (to.equivalence_bounds) to.equivalence_bounds->second = row.real(column);
+         }}};
     return columns.all(database, std::string("FROM protocol_version p, json_each(p.expanded_json, '$.analyses') a") +
                                      kByProtocol + ", a.key");
+}
+
+std::vector<DataRuleRow> readDataRules(const Database& database) {
+    using Row = DataRuleRow;
+    const Selection<Row> columns = {
+        {"p.protocol_sha256", &Row::protocol_sha256},
+        {"r.key + 1", &Row::number},
+        {"json_extract(r.value, '$.data')='participants'",
+         [](const Statement& row, int column, Row& to) { to.rule.of_participants = row.integer(column) != 0; }},
+        {"json_extract(r.value, '$.value')",
+         [](const Statement& row, int column, Row& to) { to.rule.value = row.text(column); }},
+        {"json_extract(r.value, '$.below')",
+         [](const Statement& row, int column, Row& to) { readValue(row, column, to.rule.below); }},
+        {"json_extract(r.value, '$.above')",
+         [](const Statement& row, int column, Row& to) { readValue(row, column, to.rule.above); }},
+        {"coalesce(json_extract(r.value, '$.reason'), '')",
+         [](const Statement& row, int column, Row& to) { to.rule.reason = row.text(column); }}};
+    return columns.all(database, std::string("FROM protocol_version p, json_each(p.expanded_json, '$.data_rules') r") +
+                                     kByProtocol + ", r.key");
 }
 
 std::vector<NamedFileRow> readNamedFiles(const Database& database) {

@@ -15,6 +15,7 @@ std::vector<std::string> readMainBlocks(const Database& database, const std::str
 std::vector<ConditionRow> readConditions(const Database& database);      // those that sessions plan
 std::vector<PlannedCellRow> readPlannedCells(const Database& database);  // by participant, session, block, condition
 std::vector<AnalysisRow> readAnalyses(const Database& database);
+std::vector<DataRuleRow> readDataRules(const Database& database);
 std::vector<NamedFileRow> readNamedFiles(const Database& database);
 std::vector<QuestionnaireRow> readQuestionnaires(const Database& database);
 

@@ -10,6 +10,7 @@
 #include "study/design/adaptive.h"
 #include "study/measures/cues.h"
 #include "study/measures/measures.h"
+#include "study/plan/analysis.h"
 #include "study/session/apparatus.h"
 #include "study/session/trial_sink.h"
 
@@ -110,6 +111,19 @@ struct AnalysisRow {
     std::string block;        // empty: every main block that has the outcome
     std::vector<std::string> factors;
     std::string test;
+    std::string role;       // empty: of a plan that knew none
+    std::string transform;  // "log"; empty: none
+    std::vector<std::string> covariates;
+    std::vector<plan::Contrast> contrasts;
+    std::optional<std::pair<double, double>> equivalence_bounds;
+    std::string family;  // empty: none
+};
+
+/// A rule of the protocol on recorded values.
+struct DataRuleRow {
+    std::string protocol_sha256;
+    std::int64_t number = 1;  // in the protocol, from 1
+    plan::DataRule rule;
 };
 
 /// A file that a protocol names, as far as the database holds it.

@@ -54,7 +54,7 @@ TEST(PairFit, ThereIsNoneWithoutAnErrorOrWithNothingButErrors) {
     EXPECT_FALSE(fitPairs({}, 0.0));
 }
 
-/// A staircase as protocols/thresholds has it, about a reference of 1.
+/// A staircase of a pair, up and down about a reference of 1.
 design::AdaptiveParams staircase() {
     design::AdaptiveParams params;
     params.down_after = 3;
