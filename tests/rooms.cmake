@@ -49,7 +49,7 @@ set(rooms
   "analysis/truth      | ${contact_rooms} core/tick core/query"
   "analysis/stats      | core/base"
   "analysis/export     | core/base ${plan_rooms} study/protocol study/store analysis/stats"
-  "analysis/report     | core/base ${plan_rooms} study/store analysis/export"
+  "analysis/report     | core/base ${plan_rooms} study/store analysis/export analysis/stats"
   "study/feasible      | ${contact_rooms} core/path ${plan_rooms} analysis/truth"
   "study/run           | ${core_rooms} devices ${study_rooms} study/session study/store analysis/truth"
   "analysis/power      | core/base ${study_rooms} study/session study/store study/run analysis/export analysis/stats"

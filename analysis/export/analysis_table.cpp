@@ -5,6 +5,7 @@
 #include <map>
 
 #include "analysis/export/cell_tables.h"
+#include "analysis/export/counted_forms.h"
 #include "analysis/export/shared_columns.h"
 #include "analysis/export/staircase_tables.h"
 
@@ -20,18 +21,34 @@ struct Factors {
 
 Factors factorsOf(const StudyData& study, const store::AnalysisRow& analysis) {
     Factors factors;
-    for (const std::string& name : analysis.factors)
-        for (const FactorColumn& column : study.factors) {
-            if (column.factor != name) continue;
-            factors.all.push_back(column.column);
-            if (column.kind != "between") factors.within.push_back(column.column);
-        }
+    for (const std::string& name : analysis.factors) {
+        const auto column = std::find_if(study.factors.begin(), study.factors.end(),
+                                         [&](const FactorColumn& c) { return c.factor == name; });
+        const bool known = column != study.factors.end();  // else: which block
+        factors.all.push_back(known ? column->column : name);
+        if (!known || column->kind != "between") factors.within.push_back(factors.all.back());
+    }
     return factors;
 }
 
-/// The model in R's notation; one row a participant and combination of the factors' levels.
-std::string formulaText(const std::string& value, const std::string& test, const Factors& factors) {
-    const std::string effects = factors.all.empty() ? "1" : joined(factors.all, " * ");
+std::string valueText(const PlannedTest& planned) {
+    return planned.analysis->transform.empty() ? planned.value
+                                               : planned.analysis->transform + "(" + planned.value + ")";
+}
+
+/// The model in R's notation; one row a participant and combination of the factors' levels, of `survival` a trial.
+std::string formulaText(const PlannedTest& planned) {
+    const store::AnalysisRow& analysis = *planned.analysis;
+    const std::string& test = analysis.test;
+    const std::string value = valueText(planned);
+    const Factors factors{planned.factors, planned.within};
+    std::string effects =
+        factors.all.empty() ? "1" : joined(factors.all, test == "survival" || test == "ordinal" ? " + " : " * ");
+    for (const std::string& covariate : analysis.covariates) effects += " + " + covariate;
+    if (test == "survival")
+        return "survival::Surv(time_s, finished) ~ " + effects +
+               (factors.within.size() == factors.all.size() ? " + strata(participant_id)" : "");
+    if (test == "ordinal") return "ordered(" + value + ") ~ " + effects + " + (1 | participant_id)";
     if (test == "rm_anova" || test == "mixed_anova")
         return value + " ~ " + effects + " + Error(participant_id / (" + joined(factors.within, " * ") + "))";
     if (test == "friedman") return value + " ~ " + effects + " | participant_id";
@@ -40,18 +57,26 @@ std::string formulaText(const std::string& value, const std::string& test, const
 }
 
 /// The test as a call of R on `data`. R's formulas for two samples know no pairs from 4.4 on: the samples are split.
-std::string callText(const std::string& value, const std::string& test, const Factors& factors) {
-    const std::string formula = formulaText(value, test, factors);
-    const auto paired = [&](const char* function) {
+std::string callText(const PlannedTest& planned) {
+    const std::string formula = formulaText(planned), value = valueText(planned);
+    const std::string& test = planned.analysis->test;
+    const auto paired = [&](const char* function, const char* more = "") {
         return "with(data[order(data$participant_id), ], do.call(" + std::string(function) + ", c(unname(split(" +
-               value + ", " + joined(factors.all, ", ") + ")), paired = TRUE)))";
+               value + ", " + joined(planned.factors, ", ") + ")), paired = TRUE" + more + ")))";
     };
     const auto plain = [&](const char* function) { return function + ("(" + formula + ", data = data)"); };
     if (test == "paired_t") return paired("t.test");
     if (test == "wilcoxon") return paired("wilcox.test");
     if (test == "friedman") return plain("friedman.test");
     if (test == "mann_whitney") return plain("wilcox.test");
+    if (test == "equivalence")
+        return planned.within.empty() ? "t.test(" + formula + ", data = data, conf.level = 0.9)"
+                                      : paired("t.test", ", conf.level = 0.9");
     if (test == "lmm") return plain("lme4::lmer");
+    if (test == "ordinal") return plain("ordinal::clmm");
+    if (test == "survival")
+        return "survival::coxph(" + formula + ", data = data" +
+               (planned.within.size() == planned.factors.size() ? "" : ", cluster = participant_id") + ")";
     if (test == "rm_anova" || test == "mixed_anova") return "summary(" + plain("aov") + ")";
     return plain("t.test");
 }
@@ -80,18 +105,50 @@ struct Kept {
     }
 };
 
+/// Of the analysis' factors but those between participants.
+Names levelsWithin(const StudyData& study, const store::AnalysisRow& analysis, const store::ConditionRow* condition,
+                   const std::string& block) {
+    Names levels;
+    for (const std::string& factor : analysis.factors) {
+        const auto column = std::find_if(study.factors.begin(), study.factors.end(),
+                                         [&](const FactorColumn& c) { return c.factor == factor; });
+        if (column == study.factors.end())
+            levels.push_back(block);
+        else if (column->kind != "between")
+            levels.push_back(condition == nullptr ? kMissing : levelOf(condition->levels, factor));
+    }
+    return levels;
+}
+
+/// The same of a questionnaire's scale, by its forms that count.
+Kept keptByForms(const StudyData& study, const store::AnalysisRow& analysis) {
+    Kept kept;
+    for (const store::QuestionnaireRunRow* run : countedRuns(study)) {
+        if (run->protocol_sha256 != analysis.protocol_sha256 ||
+            !analysis.outcome.starts_with(run->questionnaire + ".") ||
+            (!analysis.block.empty() && run->block != analysis.block))
+            continue;
+        const auto condition =
+            std::find_if(study.conditions.begin(), study.conditions.end(), [&](const store::ConditionRow& row) {
+                return row.protocol_sha256 == run->protocol_sha256 && row.condition == run->condition;
+            });
+        const Names levels = levelsWithin(study, analysis, condition == study.conditions.end() ? nullptr : &*condition,
+                                          run->block.value_or(kMissing));
+        bool& has = kept.people[run->participant_id][levels];
+        for (const store::ScoreRow& score : run->scores)
+            has = has || (score.value && analysis.outcome == run->questionnaire + "." + score.scale);
+    }
+    return kept;
+}
+
 Kept keptBy(const StudyData& study, const store::AnalysisRow& analysis, const std::string& block,
             const std::vector<Cell>& cells) {
     Kept kept;
     for (const Cell& cell : cells) {
-        if (cell.protocol_sha256 != analysis.protocol_sha256 || cell.block != block ||
+        if (cell.protocol_sha256 != analysis.protocol_sha256 || (!block.empty() && cell.block != block) ||
             !canHave(*cell.condition, analysis.outcome))
             continue;
-        Names levels;
-        for (const std::string& factor : analysis.factors)
-            for (const FactorColumn& column : study.factors)
-                if (column.factor == factor && column.kind != "between")
-                    levels.push_back(levelOf(cell.condition->levels, factor));
+        const Names levels = levelsWithin(study, analysis, cell.condition, cell.block);
         bool& has = kept.people[cell.participant_id][levels];
         has = has || std::isfinite(valueOf(cell, analysis.outcome));
     }
@@ -121,11 +178,12 @@ Kept keptBy(const StudyData& study, const store::AnalysisRow& analysis, const Fa
 
 ColumnsOf<store::AnalysisRow> analysisColumns() {
     using store::AnalysisRow;
-    return {protocolColumn<AnalysisRow>(),
-            {"analysis", "Number in the protocol, from 1", "integer", &AnalysisRow::number},
-            {"outcome", "Measure that is analysed; NA: thresholds", "text", &AnalysisRow::outcome},
-            {"staircase", "Staircase whose thresholds are analysed; NA: a measure", "text",
-             [](const AnalysisRow& analysis) { return analysis.outcome.empty() ? analysis.staircase : kMissing; }}};
+    return {
+        protocolColumn<AnalysisRow>(),
+        {"analysis", "Number in the protocol, from 1", "integer", &AnalysisRow::number},
+        {"outcome", "Measure or questionnaire.scale that is analysed; NA: thresholds", "text", &AnalysisRow::outcome},
+        {"staircase", "Staircase whose thresholds are analysed; NA: a measure", "text",
+         [](const AnalysisRow& analysis) { return analysis.outcome.empty() ? analysis.staircase : kMissing; }}};
 }
 
 ColumnsOf<PlannedTest> plannedTestColumns() {
@@ -133,27 +191,24 @@ ColumnsOf<PlannedTest> plannedTestColumns() {
     append(columns, analysisColumns(),
            [](const PlannedTest& planned) -> const store::AnalysisRow& { return *planned.analysis; });
     append(columns,
-           {{"block", "Block whose trials are analysed; NA: of a staircase", "text", &PlannedTest::block},
+           {{"block", "Block whose trials are analysed; NA: of a staircase, of forms, or of all blocks", "text",
+             &PlannedTest::block},
             {"factors", "Factors, parted by ;", "text",
              [](const PlannedTest& planned) { return joined(planned.factors, ";"); }},
             {"test", "Test that the protocol names", "text",
              [](const PlannedTest& planned) { return planned.analysis->test; }},
-            {"file", "File that has the values: its rows of this protocol and block, or staircase", "text",
-             [](const PlannedTest& planned) { return planned.ofThresholds() ? "thresholds.csv" : "cells_long.csv"; }},
+            {"file", "File that has the values: its rows of this protocol and block, or staircase, or scale", "text",
+             &PlannedTest::file},
             {"value_column", "Its column", "text", &PlannedTest::value},
-            {"r_formula", "The model in R's notation, for the data of r_call", "text",
-             [](const PlannedTest& planned) {
-                 return formulaText(planned.value, planned.analysis->test, {planned.factors, planned.within});
-             }},
+            {"r_formula", "The model in R's notation, for the data of r_call", "text", formulaText},
             {"r_call",
              "The test as a call of R (lmm: with the package lme4) on data: the rows of the file that belong here, "
              "averaged "
              "by participant and factors, these as factor(), without whoever lacks a combination: data <- "
              "aggregate(rows[value_column], lapply(rows[c(\"participant_id\", factors)], factor), mean)",
-             "text",
-             [](const PlannedTest& planned) {
-                 return callText(planned.value, planned.analysis->test, {planned.factors, planned.within});
-             }},
+             "text", callText},
+            {"role", "What hangs on it by the protocol: primary, secondary, exploratory", "text",
+             [](const PlannedTest& planned) { return planned.analysis->role; }},
             {"n_participants", "Participants who count and were to have the outcome there", "integer",
              &PlannedTest::counted},
             {"n_complete", "Of these who have a value at every combination of the factors: whom complete cases keep",
@@ -187,8 +242,17 @@ std::vector<PlannedTest> plannedTests(const StudyData& study, const std::vector<
             add(analysis, factors, "", value, keptBy(study, analysis, factors));
             continue;
         }
+        if (analysis.outcome.find('.') != std::string::npos) {
+            add(analysis, factors, analysis.block, "score", keptByForms(study, analysis));
+            continue;
+        }
+        const std::string value = analysis.test == "survival" ? analysis.outcome : cellColumn(analysis.outcome);
+        if (std::find(factors.all.begin(), factors.all.end(), plan::kBlockFactor) != factors.all.end()) {
+            add(analysis, factors, "", value, keptBy(study, analysis, "", cells));
+            continue;
+        }
         for (const std::string& block : blocksOf(analysis, cells))
-            add(analysis, factors, block, cellColumn(analysis.outcome), keptBy(study, analysis, block, cells));
+            add(analysis, factors, block, value, keptBy(study, analysis, block, cells));
     }
     return tests;
 }

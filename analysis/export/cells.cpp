@@ -77,7 +77,7 @@ private:
                         attempt.block, condition->second);
         cell.kind = attempt.kind;
         cell.group = attempt.group;
-        if (!attempt.counts()) return;
+        if (!countsInMeans(study_, attempt)) return;
         cell.attempts.push_back(&attempt);
         if (const auto time = attempt.measures.find(kTime); time != attempt.measures.end())
             lengthen(attempt.protocol_sha256, attempt.block, time->second);

@@ -8,7 +8,7 @@
 
 namespace passung::exporter {
 
-/// Attempts that count in means (AttemptRow::counts()) of one participant in one block of a counted session, under one
+/// Attempts that count in means (countsInMeans()) of one participant in one block of a counted session, under one
 /// condition.
 struct Cell {
     std::string participant_id;

@@ -92,7 +92,8 @@ std::string readmeText(const StudyData& study, const std::vector<Table>& tables,
         if (table.file == kSamplesPattern && !samples) continue;
         text += "| `" + table.file + "` | " + table.about + " |\n";
     }
-    for (const ExportedFile& file : more) text += "| `" + file.path + "` | " + file.about + " |\n";
+    for (const ExportedFile& file : more)
+        if (file.columns.empty()) text += "| `" + file.path + "` | " + file.about + " |\n";
     text +=
         "| `plan.json` | The plans as they ran: every condition, block and questionnaire with all that the protocol "
         "leaves to a default. |\n"
@@ -212,12 +213,16 @@ Result<ExportReport> exportAll(const store::StoreReader& reader, const std::stri
                           sampleColumns(study->extras),
                           {}});
     }
+    const auto made = options.more_files ? options.more_files(*study) : Result(std::vector<ExportedFile>{});
+    if (!made) return made.errors();
+    const std::vector<ExportedFile>& more = *made;
+    for (const ExportedFile& file : more)
+        if (!file.columns.empty()) tables.push_back({file.path, file.about, file.columns, {}});
     for (const ExportedFile& file : namedFiles(*study)) writer.write(file.path, file.bytes);
     writer.write("plan.json", planJson(*study));
     tables.push_back(makeCodebook(tables));
     writer.write("codebook.csv", toCsv(tables.back()));
     writer.write("codebook.json", codebookJson(tables));
-    const auto more = options.more_files ? options.more_files(*study) : std::vector<ExportedFile>{};
     for (const ExportedFile& file : more) writer.write(file.path, file.bytes);
     writer.write("README.md", readmeText(*study, tables, more, options.samples));
     if (options.samples) writeSamples(reader, *study, options, writer);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/export/study_data.h"
+#include "analysis/export/table.h"
 #include "core/base/result.h"
 #include "study/store/read/store_reader.h"
 
@@ -16,7 +17,8 @@ namespace passung::exporter {
 struct ExportedFile {
     std::string path;
     std::string bytes;
-    std::string about = {};  // one sentence for the README; empty: none
+    std::string about = {};            // one sentence for the README; empty: none
+    std::vector<Column> columns = {};  // of a table: what the codebook says of them
 };
 
 struct ExportOptions {
@@ -28,7 +30,7 @@ struct ExportOptions {
     /// Asked as often: true ends the export, which then leaves nothing; empty: never.
     std::function<bool()> cancelled = {};
     /// Further files, made of what the tables are made of; empty: none.
-    std::function<std::vector<ExportedFile>(const StudyData& study)> more_files = {};
+    std::function<Result<std::vector<ExportedFile>>(const StudyData& study)> more_files = {};
     /// Called in the folder when everything is written, SHA256SUMS too, before it takes its place. Of what it adds only
     /// the files stay that it names.
     std::function<std::vector<std::string>(const std::filesystem::path& folder)> in_folder = {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "analysis/export/data_rules.h"
 #include "analysis/export/staircase_tables.h"
 #include "analysis/export/table.h"
 #include "analysis/export/trial_tables.h"
@@ -86,6 +87,7 @@ Result<StudyData> readStudy(const store::StoreReader& reader) {
     take(reader.conditions(), study.conditions, errors);
     take(reader.plannedCells(), study.planned, errors);
     take(reader.analyses(), study.analyses, errors);
+    take(reader.dataRules(), study.data_rules, errors);
     take(reader.questionnaires(), study.definitions, errors);
     take(reader.namedFiles(), study.files, errors);
     take(reader.measures(), study.measures, errors);
@@ -114,6 +116,7 @@ Result<StudyData> readStudy(const store::StoreReader& reader) {
             for (const Column& column : table.columns) taken.insert(column.name);
     study.factors = mergeFactors(factors, taken);
     for (store::AttemptRow& attempt : study.attempts) attempt.group = groupOf(study, attempt.participant_id);
+    applyRules(study);
     return study;
 }
 
@@ -138,10 +141,16 @@ std::string sequenceOf(const StudyData& study, const std::string& participant) {
     return kMissing;
 }
 
+bool countsInMeans(const StudyData& study, const store::AttemptRow& attempt) {
+    return attempt.counts() && study.left_out.attempts.count(attempt.attempt_id) == 0;
+}
+
 std::set<std::string> countedSessions(const StudyData& study) {
     std::set<std::string> ids;
     for (const store::SessionRow& session : study.sessions)
-        if (session.counted) ids.insert(session.session_id);
+        if (session.counted &&
+            study.left_out.participants.count({session.protocol_sha256, session.participant_id}) == 0)
+            ids.insert(session.session_id);
     return ids;
 }
 

@@ -19,6 +19,12 @@ struct FactorColumn {
     std::vector<std::string> levels;
 };
 
+/// Whom and what the protocols' rules on recorded values leave out, and why.
+struct LeftOut {
+    std::map<std::int64_t, std::string> attempts;                             // by attempt_id
+    std::map<std::pair<std::string, std::string>, std::string> participants;  // by protocol, participant
+};
+
 /// Everything of a database that the tables are made of, samples apart.
 struct StudyData {
     std::vector<store::ProtocolRow> protocols;
@@ -26,6 +32,8 @@ struct StudyData {
     std::vector<store::ConditionRow> conditions;
     std::vector<store::PlannedCellRow> planned;
     std::vector<store::AnalysisRow> analyses;
+    std::vector<store::DataRuleRow> data_rules;
+    LeftOut left_out;                         // by these rules
     std::vector<store::MeasureRow> measures;  // those that a protocol names
     std::vector<store::MeasureRow> counters;  // likewise, of ticks: how the loop did
     std::vector<store::ParticipantRow> participants;
@@ -56,8 +64,11 @@ std::string groupOf(const StudyData& study, const std::string& participant);
 /// Row of the counterbalancing that the participant has; NA if none.
 std::string sequenceOf(const StudyData& study, const std::string& participant);
 
+/// Does the attempt count in means, if its session does? By AttemptRow::counts() and the protocols' rules.
+bool countsInMeans(const StudyData& study, const store::AttemptRow& attempt);
+
 /// Of each participant and protocol the sessions that means are taken over: the complete ones, else the latest; none
-/// of whoever is excluded.
+/// of whoever is excluded or left out by a rule.
 std::set<std::string> countedSessions(const StudyData& study);
 
 }  // namespace passung::exporter

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <string_view>
 
 #include "analysis/export/analysis_table.h"
+#include "analysis/export/cell_tables.h"
 #include "analysis/export/cells.h"
 #include "core/base/json.h"
 
@@ -35,6 +37,9 @@ const TestWords& wordsOf(const std::string& test) {
         {"mann_whitney", "rank-sum test of Mann and Whitney", {"coin"}},
         {"mixed_anova", "mixed analysis of variance", {"afex", "emmeans", "effectsize"}},
         {"lmm", "linear mixed model", {"lmerTest", "lme4", "emmeans"}},
+        {"survival", "proportional hazards of the time to success", {"survival"}},
+        {"ordinal", "cumulative link mixed model", {"ordinal"}},
+        {"equivalence", "test of equivalence", {}},
         {"mean", "mean with its interval", {}}};
     const auto found =
         std::find_if(known.begin(), known.end(), [&](const TestWords& words) { return test == words.test; });
@@ -83,6 +88,7 @@ struct Section {
     const PlannedTest& planned;
     const StudyData& study;
     std::size_t number, protocol;  // from 1
+    Names blocks = {};             // with cells
 
     std::string id() const { return fmt::format("a{}", number); }
     const std::string& test() const { return planned.analysis->test; }
@@ -99,19 +105,45 @@ struct Section {
                (between().empty() ? "" : ", between = " + rTexts(between()));
     }
     std::string factors() const { return planned.factors.empty() ? "character()" : rTexts(planned.factors); }
+    /// Empty, or what follows a call's other arguments.
+    std::string contrasts() const {
+        Names each;
+        for (const plan::Contrast& contrast : planned.analysis->contrasts)
+            each.push_back(rTexts({contrast.factor, contrast.level, contrast.against}));
+        return each.empty() ? "" : ", contrasts = list(" + exporter::joined(each, ", ") + ")";
+    }
+    bool isExploratory() const { return planned.analysis->role == "exploratory"; }
 };
+
+/// What is analysed, and where.
+std::string outcomeOf(const Section& section) {
+    const store::AnalysisRow& analysis = *section.planned.analysis;
+    if (section.planned.ofThresholds()) return "thresholds of staircase " + marked(analysis.staircase);
+    const std::string outcome = (analysis.transform.empty() ? "" : "logarithm of ") + marked(analysis.outcome);
+    return outcome + (section.planned.block.empty() ? "" : " in block " + marked(section.planned.block));
+}
 
 std::string headingOf(const Section& section) {
     const store::AnalysisRow& analysis = *section.planned.analysis;
-    const bool thresholds = section.planned.ofThresholds();
     std::string text = fmt::format("## Analysis {}: {}, {} {{#{}}}\n\n", marked(std::to_string(section.number)),
-                                   thresholds ? "thresholds of staircase " + marked(analysis.staircase)
-                                              : marked(analysis.outcome) + " in block " + marked(section.planned.block),
-                                   wordsOf(section.test()).words, section.id());
+                                   outcomeOf(section), wordsOf(section.test()).words, section.id());
     Names marks;
     for (const std::string& factor : section.planned.factors) marks.push_back(marked(factor));
     if (!marks.empty()) text += "Factors: " + exporter::joined(marks, ", ") + ". ";
-    return text + "Planned as number " + marked(std::to_string(analysis.number)) + " of the protocol.\n\n";
+    text += "Planned as number " + marked(std::to_string(analysis.number)) + " of the protocol";
+    if (!analysis.role.empty()) text += ", " + analysis.role;
+    if (!analysis.family.empty()) text += ", in the family " + marked(analysis.family);
+    return text + ".\n\n";
+}
+
+/// Blocks of a protocol that have cells.
+Names blocksOf(const std::vector<exporter::Cell>& cells, const std::string& protocol) {
+    Names blocks;
+    for (const exporter::Cell& cell : cells)
+        if ((protocol.empty() || cell.protocol_sha256 == protocol) &&
+            std::find(blocks.begin(), blocks.end(), cell.block) == blocks.end())
+            blocks.push_back(cell.block);
+    return blocks;
 }
 
 /// Levels in the order of the plan, as R's list.
@@ -120,48 +152,86 @@ std::string levelsOf(const Section& section) {
     for (const std::string& factor : section.planned.factors)
         for (const FactorColumn& column : section.study.factors)
             if (column.column == factor) lists.push_back(factor + " = " + rTexts(column.levels));
+    if (section.planned.overBlocks()) lists.push_back("block = " + rTexts(section.blocks));
     return section.id() + "_levels <- list(" + exporter::joined(lists, ",\n  ") + ")\n";
 }
 
 std::string rowsOf(const Section& section, const std::string& table) {
     const bool thresholds = section.planned.ofThresholds();
-    return fmt::format("subset({}, protocol_sha256 == protocols[{}] & {} == {})", table, section.protocol,
-                       thresholds ? "staircase" : "block",
-                       rText(thresholds ? section.planned.analysis->staircase : section.planned.block));
+    std::string rows = fmt::format("subset({}, protocol_sha256 == protocols[{}]", table, section.protocol);
+    if (thresholds) rows += " & staircase == " + rText(section.planned.analysis->staircase);
+    if (!section.planned.block.empty()) rows += " & block == " + rText(section.planned.block);
+    return rows + ")";
+}
+
+/// The table that has the persons' values: of single trials that of cells tells who has any.
+std::string valuesOf(const Section& section) {
+    if (section.planned.ofThresholds()) return rowsOf(section, "thresholds");
+    if (section.planned.ofScale())
+        return "scale_rows(" + rowsOf(section, "scores") + ", attempts, " + rText(section.planned.analysis->outcome) +
+               ", " + section.factors() + ")";
+    return rowsOf(section, "cells");
+}
+
+std::string columnOf(const Section& section) {
+    return section.planned.ofTrials() ? exporter::cellColumn(section.planned.value) : section.planned.value;
 }
 
 std::string dataOf(const Section& section) {
     const std::string id = section.id();
-    const char* table = section.planned.ofThresholds() ? "thresholds" : "cells";
-    return levelsOf(section) + fmt::format("rows <- with_levels({}, {}_levels)\n", rowsOf(section, table), id) +
-           fmt::format("people <- counted_people(sessions, studied, protocols[{}])\n", section.protocol) +
-           fmt::format("{0} <- means_of_people(\"{0}\", rows, people, {1}{2})\n", id, rText(section.planned.value),
-                       section.sides());
+    const store::AnalysisRow& analysis = *section.planned.analysis;
+    std::string text =
+        levelsOf(section) + fmt::format("rows <- with_levels({}, {}_levels)\n", valuesOf(section), id) +
+        fmt::format("people <- counted_people(sessions, studied, protocols[{}])\n", section.protocol) +
+        fmt::format("{0} <- means_of_people(\"{0}\", rows, people, {1}{2}{3})\n", id, rText(columnOf(section)),
+                    section.sides(), analysis.transform.empty() ? "" : ", transform = \"" + analysis.transform + "\"");
+    if (!analysis.covariates.empty() && section.test() == "lmm")
+        text += fmt::format("{0} <- with_covariates({0}, with_levels({1}, {0}_levels), {2}, {3})\n", id,
+                            rowsOf(section, "trials"), rTexts(analysis.covariates), section.factors());
+    return text;
 }
 
 std::string pictureOf(const Section& section) {
-    const char* file = section.planned.ofThresholds() ? "thresholds.csv" : "cells_long.csv";
-    return fmt::format("plot_people({}, {}, {})\n", section.id(), rText(section.planned.value), section.factors()) +
-           fmt::format("under_picture(\"{}\", {})\n", file, rText(section.planned.value));
+    const char* file = section.planned.ofTrials() ? "cells_long.csv" : section.planned.file();
+    return fmt::format("plot_people({}, {}, {})\n", section.id(), rText(columnOf(section)), section.factors()) +
+           fmt::format("under_picture(\"{}\", {})\n", file, rText(columnOf(section)));
+}
+
+/// Rows of single trials of those who are analysed.
+std::string trialsOf(const Section& section) {
+    const std::string id = section.id();
+    return fmt::format("made <- with_levels({}, {}_levels)\n", rowsOf(section, "trials"), id) +
+           fmt::format("made <- subset(made, participant_id %in% levels({}$participant_id))\n", id);
 }
 
 /// The test itself, as an analyst calls it, and what shows it.
 std::string testOf(const Section& section) {
-    const std::string id = section.id(), value = rText(section.planned.value);
+    const std::string id = section.id(), value = rText(columnOf(section));
+    const store::AnalysisRow& analysis = *section.planned.analysis;
     std::string text = fmt::format("show_cells(\"{0}\", {0}, {1}, {2})\n", id, value, section.factors());
+    std::string covariates;
+    for (const std::string& covariate : analysis.covariates) covariates += " + " + covariate;
+    if (section.test() == "survival")
+        return text + trialsOf(section) +
+               fmt::format("{0}_p <- show_survival(\"{0}\", made{1}{2})\n", id, section.sides(),
+                           covariates.empty() ? "" : ", covariates = " + rTexts(analysis.covariates));
     const auto fitted = [&](const std::string& call, const char* shown) {
-        return text + fmt::format("{0}_fit <- computed(\"{0}\", {1})\n{0}_p <- {2}(\"{0}\", {0}_fit, {0}, {3}, {4})\n",
-                                  id, call, shown, value, section.factors());
+        return text + fmt::format(
+                          "{0}_fit <- computed(\"{0}\", {1})\n"
+                          "{0}_p <- {2}(\"{0}\", {0}_fit, {0}, {3}, {4}{5})\n",
+                          id, call, shown, value, section.factors(), section.contrasts());
     };
     if (section.test() == "rm_anova" || section.test() == "mixed_anova")
         return fitted(fmt::format("aov_ez(\"participant_id\", {}, {}{})", value, id, section.sides()), "show_anova");
     if (section.test() == "lmm") {
         const std::string effects =
             section.planned.factors.empty() ? "1" : exporter::joined(section.planned.factors, " * ");
-        return fitted(
-            fmt::format("lmerTest::lmer({} ~ {} + (1 | participant_id), {})", section.planned.value, effects, id),
-            "show_lmm");
+        return fitted(fmt::format("lmerTest::lmer({} ~ {} + (1 | participant_id), {})", columnOf(section),
+                                  effects + covariates, id),
+                      "show_lmm");
     }
+    if (section.test() == "ordinal")
+        return fitted(fmt::format("ordinal_model({}, {}, {})", id, value, section.factors()), "show_ordinal");
     const std::string factor = section.planned.factors.empty() ? "" : rText(section.planned.factors.front());
     const auto ofLevels = [&](const std::string& levels, const std::string& call) {
         return text + fmt::format(
@@ -177,6 +247,13 @@ std::string testOf(const Section& section) {
     if (section.test() == "welch_t") return ofPair("t.test", ", ", "");
     if (section.test() == "wilcoxon") return ofPair("signed_ranks", " - ", "");
     if (section.test() == "mann_whitney") return ofPair("rank_sums", ", ", "");
+    if (section.test() == "equivalence")
+        return text + fmt::format(
+                          "{0}_pair <- split({0}${1}, {0}${2})\n"
+                          "{0}_p <- show_equivalence(\"{0}\", {0}_pair, {3}, {4}, c({5}, {6}), paired = {7})\n",
+                          id, columnOf(section), section.planned.factors.front(), value, factor,
+                          analysis.equivalence_bounds->first, analysis.equivalence_bounds->second,
+                          section.planned.within.empty() ? "FALSE" : "TRUE");
     if (section.test() == "friedman")
         return text + fmt::format(
                           "{0}_wide <- do.call(cbind, split({0}${1}, {0}${2}))\n"
@@ -192,9 +269,8 @@ std::string testOf(const Section& section) {
 std::string besideOf(const Section& section) {
     const std::string id = section.id();
     const std::string& outcome = section.planned.analysis->outcome;
-    std::string text = fmt::format("made <- with_levels({}, {}_levels)\n", rowsOf(section, "trials"), id) +
-                       fmt::format("made <- subset(made, participant_id %in% levels({}$participant_id))\n", id);
-    if (exporter::isCensored(outcome) && !section.planned.factors.empty())
+    std::string text = trialsOf(section);
+    if (exporter::isCensored(outcome) && !section.planned.factors.empty() && !section.planned.ofTrials())
         text += fmt::format("show_censored(\"{0}\", made, {0}_p{1})\n", id, section.sides());
     return text + fmt::format("show_position(\"{}\", made, {})\n", id, rText(outcome));
 }
@@ -205,7 +281,25 @@ std::string sectionText(const Section& section) {
                        chunk(fmt::format("{0}-picture, fig.height = picture_height({0}, {1})", id, section.factors()),
                              pictureOf(section)) +
                        chunk(id + "-test", testOf(section));
-    if (!section.planned.ofThresholds()) text += chunk(id + "-beside", besideOf(section));
+    if (section.planned.ofThresholds())
+        text += chunk(id + "-function, fig.height = function_height(answers_of(" + rowsOf(section, "answers") + "))",
+                      fmt::format("show_functions(\"{}\", answers_of({}), rows)\n", id, rowsOf(section, "answers")));
+    else if (!section.planned.ofScale())
+        text += chunk(id + "-beside", besideOf(section));
+    return text;
+}
+
+/// p values of analyses that are planned as one family.
+std::string familiesText(const std::vector<Section>& sections) {
+    std::map<std::string, Names> families;
+    for (const Section& section : sections)
+        if (!section.planned.analysis->family.empty())
+            families[section.planned.analysis->family].push_back(fmt::format("{0} = {0}_p", section.id()));
+    if (families.empty()) return "";
+    std::string text = "## Families\n\n";
+    for (const auto& [name, members] : families)
+        text += chunk("family-" + name,
+                      "show_family(" + rText(name) + ", list(" + exporter::joined(members, ", ") + "))\n");
     return text;
 }
 
@@ -233,19 +327,21 @@ std::string headOf(const StudyData& study, const Names& attached) {
            "\noutput:\n  html_document:\n    theme: null\n    css: report.css\n    highlight: null\n    mathjax: null\n"
            "    toc: true\n    self_contained: true\n---\n\n" +
            "<!-- Written from the plan of the study; yours to change. Reads only files that lie beside it. -->\n\n" +
-           chunk(
-               "setup, include = FALSE",
-               "knitr::opts_chunk$set(echo = FALSE, warning = FALSE, message = FALSE, results = \"asis\",\n"
-               "                      fig.width = 7.4, dev = \"svg\")\n"
-               "invisible(Sys.setlocale(\"LC_COLLATE\", \"C\"))\n" +
-                   libraries +
-                   "source(\"report.R\")\nsource(\"report_course.R\")\nsource(\"report_tests.R\")\ncheck_tables()\n\n" +
-                   "studied <- " + rText(kindOf(study)) + "  # kind of participants; others are left apart\n" +
-                   "protocols <- " + (hashes.empty() ? "character()" : rTexts(hashes)) + "\n" +
-                   "participants <- read_table(\"participants.csv\")\nsessions <- read_table(\"sessions.csv\")\n"
-                   "attempts <- read_table(\"trials.csv\")\n"
-                   "trials <- subset(attempts, kind == studied & counted == 1)\n"
-                   "cells <- subset(read_table(\"cells_long.csv\"), kind == studied)\n") +
+           chunk("setup, include = FALSE",
+                 "knitr::opts_chunk$set(echo = FALSE, warning = FALSE, message = FALSE, results = \"asis\",\n"
+                 "                      fig.width = 7.4, dev = \"svg\")\n"
+                 "options(bitmapType = \"cairo\")\n"
+                 "invisible(Sys.setlocale(\"LC_COLLATE\", \"C\"))\n"
+                 "for (file in c(\"report.R\", \"report_course.R\", \"report_curves.R\", \"report_pictures.R\", "
+                 "\"report_tests.R\")) source(file)\n"
+                 "check_tables()\n" +
+                     libraries + "\n" + "studied <- " + rText(kindOf(study)) +
+                     "  # kind of participants; others are left apart\n" + "protocols <- " +
+                     (hashes.empty() ? "character()" : rTexts(hashes)) + "\n" +
+                     "participants <- read_table(\"participants.csv\")\nsessions <- read_table(\"sessions.csv\")\n"
+                     "attempts <- read_table(\"trials.csv\")\n"
+                     "trials <- subset(attempts, kind == studied & counted == 1)\n"
+                     "cells <- subset(read_table(\"cells_long.csv\"), kind == studied)\n") +
            chunk("banner", "banner(studied)\n");
 }
 
@@ -257,12 +353,41 @@ std::string courseText() {
            "# Timing of loop and pictures\n\n" +
            chunk("timing",
                  "show_timing(of_kind(read_table(\"timing.csv\"), studied), "
-                 "of_kind(read_table(\"presentation.csv\"), studied))\n");
+                 "of_kind(read_table(\"presentation.csv\"), studied))\n") +
+           chunk("timeline, fig.height = timeline_height(of_kind(attempts, studied))",
+                 "plot_timeline(of_kind(attempts, studied))\n");
 }
 
-/// `outcomes`: measures that analyses plan.
-std::string exploratoryText(const Names& outcomes) {
-    std::string text = "# Exploratory\n\nNothing from here on was planned.\n\n";
+/// Of a picture whose lines would take more as such than as points.
+constexpr const char* kManyLines = ", dev = \"png\", dpi = 120";
+
+/// Pictures of a block's trials; `outcomes`: measures that analyses plan.
+std::string blockPictures(const std::string& block, const Names& outcomes) {
+    const std::string rows = "subset(courses, block == " + rText(block) + ")";
+    std::string text = "## Block " + marked(block) + "\n\n" +
+                       chunk("contact-" + block + ", fig.height = courses_height(" + rows + ")" + kManyLines,
+                             "plot_courses(" + rows + ")\n") +
+                       chunk("paths-" + block + ", fig.height = paths_height(" + rows + ")" + kManyLines,
+                             "plot_paths(" + rows + ")\n");
+    for (const std::string& outcome : outcomes)
+        text += chunk("who-" + block + "-" + outcome +
+                          ", fig.height = matrix_height(subset(cells, block == " + rText(block) + "))",
+                      "plot_matrix(subset(cells, block == " + rText(block) + "), " +
+                          rText(exporter::cellColumn(outcome)) + ")\n");
+    return text;
+}
+
+/// `outcomes`: measures that analyses plan; `blocks`: with trials that can count.
+std::string exploratoryText(const StudyData& study, const Names& outcomes, const Names& blocks,
+                            const std::string& planned) {
+    std::string text = "# Exploratory\n\n";
+    text += planned.empty() ? "Nothing from here on was planned.\n\n"
+                            : "What follows was planned as exploratory; after that nothing was.\n\n" + planned;
+    if (!blocks.empty()) text += chunk("courses, include = FALSE", "courses <- read_courses(trials)\n");
+    for (const std::string& block : blocks) text += blockPictures(block, outcomes);
+    if (!study.accuracy.empty())
+        text += "## What accuracy cost\n\n" +
+                chunk("accuracy, fig.height = 4", "plot_accuracy(read_table(\"accuracy.csv\"))\n");
     for (const std::string& outcome : outcomes)
         text += "## Course of " + marked(outcome) + "\n\n" +
                 chunk("course-" + outcome + ", fig.height = course_height(trials)",
@@ -270,7 +395,10 @@ std::string exploratoryText(const Names& outcomes) {
                 "Each point is a trial, the line the median of a place; time-outs are at their limit.\n\n";
     return text + "## Means and scores\n\n" +
            chunk("measures", "show_measures(cells, grep(\"[.](restricted_)?mean$\", names(cells), value = TRUE))\n") +
-           chunk("scores", "show_scores(of_kind(read_table(\"questionnaire_scores.csv\"), studied))\n") +
+           (study.questionnaires.empty()
+                ? ""
+                : chunk("profiles, fig.height = profiles_height(scores)", "plot_profiles(scores)\n") +
+                      chunk("scores", "show_scores(scores)\n")) +
            "# Programs\n\n" + chunk("programs", "show_programs()\n") +
            chunk("results, include = FALSE", "write_results(studied)\n");
 }
@@ -284,21 +412,23 @@ AnalysisText writeAnalysis(const StudyData& study) {
             written.packages.push_back(package);
     };
     for (const char* package : {"rmarkdown", "knitr", "jsonlite", "digest"}) need(package);
-    std::string sections;
+    std::vector<Section> sections;
     Names outcomes;
     bool reads_thresholds = false;
     const std::vector<exporter::Cell> cells = exporter::cellsOf(study);
-    for (const PlannedTest& planned : exporter::plannedTests(study, cells)) {
+    const std::vector<PlannedTest> tests = exporter::plannedTests(study, cells);
+    for (const PlannedTest& planned : tests) {
         const auto protocol = std::find_if(study.protocols.begin(), study.protocols.end(), [&](const auto& row) {
             return row.sha256 == planned.analysis->protocol_sha256;
         });
-        const Section section{planned, study, ++written.analyses,
-                              static_cast<std::size_t>(protocol - study.protocols.begin()) + 1};
-        sections += sectionText(section);
+        sections.push_back({planned, study, ++written.analyses,
+                            static_cast<std::size_t>(protocol - study.protocols.begin()) + 1,
+                            blocksOf(cells, protocol->sha256)});
         reads_thresholds = reads_thresholds || planned.ofThresholds();
         for (const std::string& package : wordsOf(planned.analysis->test).packages) need(package);
         const std::string& outcome = planned.analysis->outcome;
-        if (!outcome.empty() && std::find(outcomes.begin(), outcomes.end(), outcome) == outcomes.end())
+        if (!outcome.empty() && !planned.ofScale() &&
+            std::find(outcomes.begin(), outcomes.end(), outcome) == outcomes.end())
             outcomes.push_back(outcome);
         if (exporter::isCensored(outcome) && !planned.factors.empty()) need("survival");
     }
@@ -309,9 +439,16 @@ AnalysisText writeAnalysis(const StudyData& study) {
     written.text = headOf(study, attached) + courseText() + "# Planned analyses\n\n";
     if (written.analyses == 0) written.text += "The protocol plans none.\n\n";
     if (reads_thresholds)
+        written.text += chunk("thresholds, include = FALSE",
+                              "thresholds <- of_kind(read_table(\"thresholds.csv\"), studied)\n"
+                              "answers <- of_kind(read_table(\"staircase.csv\"), studied)\n");
+    if (!study.questionnaires.empty())
         written.text +=
-            chunk("thresholds, include = FALSE", "thresholds <- of_kind(read_table(\"thresholds.csv\"), studied)\n");
-    written.text += sections + exploratoryText(outcomes);
+            chunk("forms, include = FALSE", "scores <- of_kind(read_table(\"questionnaire_scores.csv\"), studied)\n");
+    std::string planned, exploratory;
+    for (const Section& section : sections) (section.isExploratory() ? exploratory : planned) += sectionText(section);
+    written.text +=
+        planned + familiesText(sections) + exploratoryText(study, outcomes, blocksOf(cells, ""), exploratory);
     return written;
 }
 

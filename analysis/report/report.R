@@ -15,11 +15,13 @@ with_levels <- function(rows, levels) {
   rows
 }
 
+read_sums <- function() read.table("SHA256SUMS", col.names = c("sum", "file"), colClasses = "character", quote = "",
+                                  comment.char = "")
+
 # Stops if a table is not what it was when this folder was written.
 check_tables <- function() {
-  sums <- read.table("SHA256SUMS", col.names = c("sum", "file"), colClasses = "character", quote = "",
-                     comment.char = "")
-  for (i in which(!grepl("/", sums$file) & grepl("[.]csv$", sums$file))) {
+  sums <- read_sums()
+  for (i in which(!grepl("/", sums$file) & grepl("[.]csv([.]gz)?$", sums$file))) {
     file <- sums$file[i]
     if (!file.exists(file) || digest::digest(file = file, algo = "sha256") != sums$sum[i])
       stop(file, ": is not the file that was written into this folder: its SHA-256 differs from SHA256SUMS",
@@ -45,11 +47,14 @@ label_of <- function(file, column) {
   if (row$unit %in% c("", "NA")) row$label else paste0(row$label, " [", row$unit, "]")
 }
 
+unit_of <- function(file, column) codebook$unit[codebook$file == file & codebook$column == column]
+
 # ---- Numbers ---------------------------------------------------------------------------------------------------------
 
 report <- new.env()
-report$results <- list()
-report$shown <- list()
+report$results <- new.env()  # by id, in the order of `ids`
+report$shown <- new.env()
+report$ids <- character()
 report$cells <- list()
 report$left_out <- list()
 report$not_computed <- list()
@@ -66,6 +71,7 @@ name <- function(x) paste0("<span class=\"name\">", escape(x), "</span>")
 
 keep <- function(id, x, text) {
   if (!is.null(report$results[[id]])) stop("two results have the id ", id)
+  report$ids[length(report$ids) + 1] <- id
   report$results[[id]] <- if (length(x) == 1 && is.finite(x)) as.numeric(x) else NA_real_
   report$shown[[id]] <- paste0("<span data-result=\"", escape(id), "\">", text, "</span>")
 }
@@ -165,6 +171,19 @@ banner <- function(studied) {
          "</div>\n<style>h1:not(.title)::after, h2::after { content: \"", studied, "\" }</style>")
 }
 
+# ---- Pictures --------------------------------------------------------------------------------------------------------
+
+# So many panels in a plain frame; returns what to give back to par().
+panels <- function(rows, columns, margins, below = 0) par(mfrow = c(rows, columns), mar = margins,
+  oma = c(below, 0, 0, 0), mgp = c(2.3, 0.5, 0),
+  tcl = -0.25, las = 1, bty = "l", cex = 0.8, fg = "#444444", col.axis = "#444444", col.lab = "#444444")
+
+# Above so many panels from here on, as small as it takes.
+pane_title <- function(text, panes = 1) title(main = text, font.main = 1, adj = 0, line = 0.5, xpd = NA,
+  cex.main = max(0.5, min(1, panes * par("fin")[1] * 0.85 / strwidth(text, "inches", cex = 1))))
+
+columns_of <- function(panes) if (length(panes) %in% c(2, 4)) 2 else min(3, length(panes))
+
 # ---- Programs --------------------------------------------------------------------------------------------------------
 
 show_programs <- function() {
@@ -179,7 +198,7 @@ show_programs <- function() {
 write_results <- function(studied) {
   for (id in names(report$not_computed)) cat("not computed: ", id, ": ", report$not_computed[[id]], "\n", sep = "",
     file = stderr())
-  text <- jsonlite::toJSON(list(kind = studied, results = report$results, cells = report$cells,
+  text <- jsonlite::toJSON(list(kind = studied, results = mget(report$ids, report$results), cells = report$cells,
                                 left_out = report$left_out,
                                 not_computed = report$not_computed, disagreements = report$warnings),
                            auto_unbox = TRUE, digits = I(17), na = "null", null = "null", pretty = TRUE)

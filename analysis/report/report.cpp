@@ -1,6 +1,7 @@
 #include "analysis/report/report.h"
 
 #include "analysis/report/analysis_text.h"
+#include "analysis/report/course_file.h"
 #include "analysis/report/folder_texts.h"
 #include "analysis/report/r_program.h"
 
@@ -27,10 +28,14 @@ Result<ReportOutcome> writeReport(const store::StoreReader& reader, const std::s
     ReportOutcome outcome;
     AnalysisText text;
     exporter::ExportOptions more = options;
-    more.more_files = [&](const exporter::StudyData& study) {
+    more.more_files = [&](const exporter::StudyData& study) -> Result<std::vector<exporter::ExportedFile>> {
         text = writeAnalysis(study);
         outcome.analyses = text.analyses;
-        return filesBeside(text);
+        std::vector<exporter::ExportedFile> files = filesBeside(text);
+        auto courses = courseFile(reader, study);
+        if (!courses) return courses.errors();
+        if (!courses->columns.empty()) files.push_back(*std::move(courses));
+        return files;
     };
     more.in_folder = [&](const std::filesystem::path& folder) -> std::vector<std::string> {
         outcome.missing = installCommand(missingPrograms(text.packages));

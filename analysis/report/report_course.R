@@ -3,18 +3,20 @@
 # ---- Who and what is counted -----------------------------------------------------------------------------------------
 
 # Why a person counts for nothing; NA: does count.
-fates <- function(participants, sessions) {
+fates <- function(participants, sessions, attempts) {
   counted <- participants$participant_id %in% sessions$participant_id[sessions$counted == 1]
   begun <- participants$participant_id %in% sessions$participant_id
   reason <- ifelse(is.na(participants$status_reason), "", paste0(": ", participants$status_reason))
+  ruled <- attempts[grepl("^rule ", attempts$not_counted_because), ]
+  rule <- ruled$not_counted_because[match(participants$participant_id, ruled$participant_id)]
   ifelse(counted, NA, ifelse(participants$status %in% c("excluded", "withdrawn"), paste0(participants$status, reason),
-                             ifelse(begun, "no session that counts", "no session begun")))
+                             ifelse(!is.na(rule), rule, ifelse(begun, "no session that counts", "no session begun"))))
 }
 
 show_flow <- function(participants, sessions, attempts, studied) {
   others <- table(participants$kind[participants$kind != studied])
   people <- participants[participants$kind == studied, ]
-  why <- fates(people, sessions)
+  why <- fates(people, sessions, attempts)
   reasons <- unique(why[!is.na(why)])
   html_table(c("Participants", "codes", "n"), words = 2, caption = "From enrolled to counted",
              c(list(c("Enrolled", "", count("flow.people.enrolled", nrow(people)))),
@@ -65,9 +67,32 @@ show_deviations <- function(participants, sessions, attempts, studied, protocols
   if (invalid > 0) items <- c(items,
                               paste0("Not valid: ", count("deviation.invalid", invalid),
                                      " attempts, for reasons that stand above."))
+  items <- c(items, changed_texts(protocols))
   if (length(items) == 0) return(para("Nothing that the program can tell became otherwise than planned.",
                                       class = "note"))
   html("<ul>", paste0("<li>", items, "</li>", collapse = "\n"), "</ul>")
+}
+
+# Which text is no longer as it was written, and which planned test it no longer has.
+changed_texts <- function(protocols) {
+  items <- character()
+  for (protocol in protocols)
+    if (!identical(digest::digest(file = file.path("protocol", paste0(protocol, ".toml")), algo = "sha256"), protocol))
+      items <- c(items, paste0("The protocol ", name(substr(protocol, 1, 8)), " in this folder is not the one that was stored."))
+  text <- knitr::current_input()
+  if (is.null(text)) return(items)
+  sums <- read_sums()
+  if (identical(digest::digest(file = text, algo = "sha256"), sums$sum[sums$file == text])) return(items)
+  items <- c(items, paste0(name(text), " was edited after it was written from the plan."))
+  if (!file.exists("analyses.csv")) return(items)
+  planned <- read_table("analyses.csv")
+  lines <- paste(readLines(text, encoding = "UTF-8", warn = FALSE), collapse = "\n")
+  for (i in seq_len(nrow(planned))) {
+    call <- if (grepl("anova", planned$test[i])) "show_anova" else paste0("show_", planned$test[i])
+    if (!grepl(paste0(call, "(\"a", i, "\""), lines, fixed = TRUE))
+      items <- c(items, paste0("Analysis ", name(i), " no longer has the test that was planned, ", name(planned$test[i]), "."))
+  }
+  items
 }
 
 # How conditions fell on the places of a block: counts, and what came before.
@@ -128,9 +153,7 @@ plot_course <- function(trials, measure) {
   blocks <- unique(trials$block)
   if (length(blocks) == 0) return(invisible())
   columns <- columns_of(blocks)
-  old <- par(mfrow = c(ceiling(length(blocks) / columns), columns), mar = c(3.6, 4.6, 1.9, 0.6), mgp = c(2.3, 0.5, 0),
-             tcl = -0.25, las = 1,
-             bty = "l", cex = 0.8, fg = "#444444", col.axis = "#444444", col.lab = "#444444")
+  old <- panels(ceiling(length(blocks) / columns), columns, c(3.6, 4.6, 1.9, 0.6))
   on.exit(par(old))
   for (block in blocks) {
     its <- trials[trials$block == block, ]
@@ -138,7 +161,7 @@ plot_course <- function(trials, measure) {
          ylab = "")
     title(ylab = measure, line = 3.4)
     grid(NA, NULL, col = "#e4e4e4", lty = 1)
-    title(main = block, font.main = 1, cex.main = 1, adj = 0, line = 0.5)
+    pane_title(block)
     middle <- tapply(its[[measure]], its$order_position, median)
     lines(as.numeric(names(middle)), middle, col = "#1f5a85", lwd = 2.2)
   }

@@ -17,8 +17,8 @@ combinations <- function(data, factors) {
 }
 
 # One mean per person and combination of the factors, of those persons who have a value at each combination within
-# persons. Keeps the others by code, with what they lack.
-means_of_people <- function(id, rows, people, value, within = character(), between = character()) {
+# persons. Keeps the others by code, with what they lack. `transform` log: the means' natural logarithms.
+means_of_people <- function(id, rows, people, value, within = character(), between = character(), transform = "none") {
   at <- combination(rows, within)
   wanted <- combination(combinations(rows, within), within)
   lacks <- function(person) {
@@ -35,6 +35,13 @@ means_of_people <- function(id, rows, people, value, within = character(), betwe
   data <- if (nrow(rows) > 0) aggregate(rows[value], rows[c("participant_id", within, between)], mean,
                                         na.rm = TRUE) else
     rows[c("participant_id", within, between, value)]
+  if (transform == "log") {
+    none <- unique(data$participant_id[!(data[[value]] > 0)])
+    report$left_out[[id]] <- rbind(report$left_out[[id]],
+                                   data.frame(participant_id = none, reason = rep("a value without a logarithm", length(none))))
+    data <- data[!(data$participant_id %in% none), ]
+    data[[value]] <- log(data[[value]])
+  }
   data[c("participant_id", within, between)] <- lapply(data[c("participant_id", within, between)],
     function(x) droplevels(factor(x)))
   out <- report$left_out[[id]]
@@ -44,6 +51,31 @@ means_of_people <- function(id, rows, people, value, within = character(), betwe
        if (nrow(out) > 0) paste0(" Left out: ",
                                  paste0(name(out$participant_id), " (", name(out$reason), ")", collapse = ", "), "."))
   data[do.call(order, unname(as.list(data[c("participant_id", within)]))), ]
+}
+
+# Scores of the forms that count on QUESTIONNAIRE.SCALE, with the factors' levels: those of the condition that a form is
+# about, else those that its person has always.
+scale_rows <- function(scores, attempts, outcome, factors) {
+  rows <- scores[scores$counted == 1 & paste0(scores$questionnaire, ".", scores$scale) == outcome, ]
+  for (factor in setdiff(factors, "block")) {
+    always <- vapply(rows$participant_id, function(person) {
+      its <- unique(attempts[[factor]][attempts$participant_id == person])
+      if (length(its) == 1) its else NA_character_
+    }, "", USE.NAMES = FALSE)
+    of_condition <- attempts[[factor]][match(rows$condition, attempts$condition)]
+    rows[[factor]] <- ifelse(is.na(of_condition), always, of_condition)
+  }
+  rows
+}
+
+# Means of covariates over the trials of each person and combination.
+with_covariates <- function(data, trials, covariates, factors) {
+  by <- c("participant_id", factors)
+  for (covariate in covariates) {
+    means <- aggregate(trials[covariate], trials[by], mean)
+    data[[covariate]] <- means[[covariate]][match(combination(data, by), combination(means, by))]
+  }
+  data
 }
 
 show_cells <- function(id, data, value, factors) {
@@ -65,19 +97,17 @@ show_cells <- function(id, data, value, factors) {
   }))
 }
 
-# Pictures: the factor with most levels is the axis, all others make the panels.
+# Pictures: the factor with most levels is the axis, all others make the panes.
 axis_of <- function(data, factors) if (length(factors) > 0) factors[which.max(vapply(data[factors], nlevels, 1L))]
 
-panels_of <- function(data, factors) {
+panes_of <- function(data, factors) {
   rest <- setdiff(factors, axis_of(data, factors))
   if (length(rest) > 0) combination(combinations(data, rest), rest) else ""
 }
 
-columns_of <- function(panels) if (length(panels) %in% c(2, 4)) 2 else min(3, length(panels))
-
 picture_height <- function(data, factors) {
-  panels <- panels_of(data, factors)
-  max(3, 2.7 * ceiling(length(panels) / columns_of(panels)))
+  panes <- panes_of(data, factors)
+  max(3, 2.7 * ceiling(length(panes) / columns_of(panes)))
 }
 
 # Every person as a thin line; before them means with their intervals.
@@ -86,10 +116,9 @@ plot_people <- function(data, value, factors) {
   blue <- "#1f5a85"
   axis_factor <- axis_of(data, factors)
   rest <- setdiff(factors, axis_factor)
-  panels <- panels_of(data, factors)
-  columns <- columns_of(panels)
-  old <- par(mfrow = c(ceiling(length(panels) / columns), columns), mar = c(4.2, 4.2, 1.9, 0.6), mgp = c(2.9, 0.5, 0),
-             tcl = -0.25, las = 1, bty = "l", cex = 0.8, fg = "#444444", col.axis = "#444444", col.lab = "#444444")
+  panes <- panes_of(data, factors)
+  columns <- columns_of(panes)
+  old <- panels(ceiling(length(panes) / columns), columns, c(4.2, 4.6, 1.9, 0.6))
   on.exit(par(old))
   half_width <- function(y) if (length(y) > 1) qt(0.975, length(y) - 1) * sd(y) / sqrt(length(y)) else 0
   range <- range(data[[value]], unlist(tapply(data[[value]], combination(data, factors),
@@ -100,14 +129,14 @@ plot_people <- function(data, value, factors) {
   wrapped <- if (max(nchar(marks)) * length(marks) > 60 / columns) gsub("([_ ])", "\\1\n", marks) else marks
   lines <- max(lengths(strsplit(wrapped, "\n")), 1)
   par(mar = c(2.6 + lines, 4.6, 1.9, 0.6))
-  for (panel in panels) {
-    its <- data[where == panel, ]
+  for (pane in panes) {
+    its <- data[where == pane, ]
     x <- if (is.null(axis_factor)) rep(1L, nrow(its)) else as.integer(its[[axis_factor]])
     plot(NA, xlim = c(0.6, length(marks) + 0.4), ylim = range, xaxt = "n", xlab = "", ylab = "")
     title(ylab = value, line = 3.4)
     if (!is.null(axis_factor)) title(xlab = axis_factor, line = 0.6 + lines)
     grid(NA, NULL, col = "#e4e4e4", lty = 1)
-    title(main = panel, font.main = 1, cex.main = 1, adj = 0, line = 0.5)
+    pane_title(pane)
     axis(1, seq_along(marks), FALSE)
     axis(1, seq_along(marks), wrapped, tick = FALSE, padj = 1, line = -0.9,
          cex.axis = if (length(marks) > 6 / columns) 0.8 else 1, gap.axis = 0.1)
@@ -196,6 +225,9 @@ show_paired_t <- function(id, test, pair, value, factor) if (!is.null(test)) com
 show_welch_t <- function(id, test, pair, value, factor) if (!is.null(test)) computed(id, {
   what <- paste(name(names(pair)[1]), "&minus;", name(names(pair)[2]))
   show_t(id, test, what, effect_of(test, pair[[1]], pair[[2]], pooled_sd = FALSE))
+  para("With so many participants the test finds in ", name("80 %"), " of studies a difference of ",
+       num(id %.% "sensitivity", power.t.test(2 / sum(1 / lengths(pair)), sd = 1, power = 0.8)$delta),
+       " standard deviations.", class = "note")
   note_normal(id, unlist(lapply(pair, function(x) x - mean(x))), "the residuals")
   copy_t(id, paste("The difference of means", what, "of", name(value)))
   setNames(test$p.value, factor)
@@ -291,13 +323,24 @@ show_friedman <- function(id, test, wide, value, factor) if (!is.null(test)) com
   setNames(test$p.value, factor)
 })
 
+# Pairs of levels, a column each: those that are planned, or all.
+pairs_of <- function(levels, factor, contrasts) {
+  if (is.null(contrasts)) return(combn(length(levels), 2))
+  its <- Filter(function(contrast) contrast[1] == factor && all(contrast[2:3] %in% levels), contrasts)
+  matrix(as.integer(unlist(lapply(its, function(contrast) match(contrast[2:3], levels)))), 2)
+}
+
 # Differences between the levels of each factor, averaged over the others; intervals are for each difference alone.
-show_differences <- function(id, fit, data, factors, ...) {
+# `contrasts`: those that are planned, each as factor, level, level; none: all.
+show_differences <- function(id, fit, data, factors, contrasts = NULL, ...) {
   rows <- unlist(lapply(factors, function(factor) {
     levels <- levels(data[[factor]])
-    pairs <- combn(length(levels), 2)
+    pairs <- pairs_of(levels, factor, contrasts)
+    if (ncol(pairs) == 0) return(list())
     means <- suppressMessages(emmeans::emmeans(fit, factor, ...))
-    these <- as.data.frame(summary(emmeans::contrast(means, "pairwise"), infer = TRUE, adjust = "none"))
+    weights <- lapply(seq_len(ncol(pairs)), function(i) replace(replace(numeric(length(levels)), pairs[1, i], 1),
+                                                                 pairs[2, i], -1))
+    these <- as.data.frame(summary(emmeans::contrast(means, weights), infer = TRUE, adjust = "none"))
     holm <- p.adjust(these$p.value, "holm")
     lapply(seq_len(nrow(these)), function(i) {
       pair <- id %.% "pair" %.% factor %.% i
@@ -310,12 +353,26 @@ show_differences <- function(id, fit, data, factors, ...) {
   html_table(c("Differences of means", "", paste(percent, "interval"), "<i>t</i>", "df", "<i>p</i>", "Holm"), rows)
 }
 
-show_anova <- function(id, fit, data, value, factors) if (!is.null(fit)) computed(id, {
+# The smallest share of variance, as F df1 / (F df1 + df2) at the noncentrality that it takes, which a test finds in 80 %
+# of studies.
+detectable_eta <- function(df1, df2) {
+  found <- function(ncp) pf(qf(0.95, df1, df2), df1, df2, ncp, lower.tail = FALSE) - 0.8
+  ncp <- uniroot(found, c(0.01, 100), extendInt = "upX", tol = 1e-10)$root
+  ncp / (ncp + df2)
+}
+
+note_sensitivity <- function(id, terms, df1, df2)
+  para("With so many participants the test finds in ", name("80 %"), " of studies an &eta;&sup2;<sub>p</sub> of ",
+       paste0(vapply(seq_along(terms), function(i) paste0(num(id %.% terms[i] %.% "sensitivity", detectable_eta(df1[i], df2[i])),
+                                                           " (", name(gsub(":", " \u00d7 ", terms[i])), ")"), ""), collapse = ", "),
+       ".", class = "note")
+
+show_anova <- function(id, fit, data, value, factors, contrasts = NULL) if (!is.null(fit)) computed(id, {
   plain <- anova(fit, correction = "none")
   corrected <- without("HF eps", anova(fit, correction = "GG"))
   terms <- rownames(plain)
   within <- names(attr(fit, "within"))
-  show_differences(id, fit, data, factors)
+  show_differences(id, fit, data, factors, contrasts)
   spheric <- vapply(strsplit(terms, ":"), function(of) any(of %in% within), NA) & plain$`num Df` > 1
   html_table(c("Analysis of variance", "df", "<i>F</i>", "<i>p</i>", "&epsilon; (GG)", "<i>p</i> (GG)",
                "&eta;&sup2;<sub>p</sub>", "interval", "&eta;&sup2;<sub>G</sub>"),
@@ -331,6 +388,7 @@ show_anova <- function(id, fit, data, value, factors) if (!is.null(fit)) compute
         num(term %.% "pes", eta$Eta2_partial, decimals = 3), interval(term %.% "pes", eta$CI_low, eta$CI_high, 3),
         num(term %.% "ges", plain$ges[i], decimals = 3))
     }))
+  note_sensitivity(id, terms, plain$`num Df`, plain$`den Df`)
   note_normal(id, residuals(fit$lm), "the residuals")
   note_spheric(id, fit)
   sentence("Analysis of variance of ", name(value), ": ", paste0(vapply(seq_along(terms), function(i) {
@@ -346,8 +404,8 @@ show_anova <- function(id, fit, data, value, factors) if (!is.null(fit)) compute
   setNames(p, terms)[terms %in% factors]
 })
 
-show_lmm <- function(id, fit, data, value, factors) if (!is.null(fit)) computed(id, {
-  if (length(factors) > 0) show_differences(id, fit, data, factors, lmer.df = "satterthwaite")
+show_lmm <- function(id, fit, data, value, factors, contrasts = NULL) if (!is.null(fit)) computed(id, {
+  if (length(factors) > 0) show_differences(id, fit, data, factors, contrasts, lmer.df = "satterthwaite")
   table <- anova(fit)
   html_table(c("Mixed model", "df", "<i>F</i>", "<i>p</i>"), lapply(seq_len(nrow(table)), function(i) {
     term <- id %.% rownames(table)[i]
@@ -360,6 +418,7 @@ show_lmm <- function(id, fit, data, value, factors) if (!is.null(fit)) computed(
        num(id %.% "sd_residual", spread[2]),
          if (lme4::isSingular(fit)) "; the fit is singular: no difference between participants is left to be told",
            ".", class = "note")
+  if (nrow(table) > 0) note_sensitivity(id, rownames(table), table$NumDF, table$DenDF)
   note_normal(id, residuals(fit), "the residuals")
   sentence("Mixed model of ", name(value), " with an intercept for each participant: ",
            paste0(vapply(rownames(table), function(term) {
@@ -370,26 +429,21 @@ show_lmm <- function(id, fit, data, value, factors) if (!is.null(fit)) computed(
   setNames(table$`Pr(>F)`, rownames(table))[rownames(table) %in% factors]
 })
 
-# Times with time-outs are censored: a model that knows it beside the planned one. Proportional hazards (Cox), main
-# effects. Within persons in strata of persons, tested by the ratio of likelihoods, which holds where all successes are on
-# one side; between persons each person is a cluster, tested by Wald's statistic.
-show_censored <- function(id, trials, planned, within = character(), between = character()) computed(id %.% "cox", {
-  if (!is.numeric(planned)) return(invisible())
-  trials <- trials[!is.na(trials$time_s), ]
-  if (all(trials$finished == 1) || all(trials$finished == 0)) {
-    para("No time was cut off by a time-out, or all were: a model of censored times says nothing more.", class = "note")
-    return(invisible())
-  }
+# Times with time-outs are censored: proportional hazards (Cox), main effects. Within persons in strata of persons, tested
+# by the ratio of likelihoods, which holds where all successes are on one side; between persons each person is a cluster,
+# tested by Wald's statistic. Shows the ratios; returns p by factor.
+show_hazards <- function(id, trials, within, between, covariates = character()) {
   trials[c(within, between)] <- lapply(trials[c(within, between)], droplevels)
   inside <- function(factors) {
-    terms <- paste(c(factors, "strata(participant_id)"), collapse = " + ")
+    terms <- paste(c(factors, covariates, "strata(participant_id)"), collapse = " + ")
     without("infinite|converge", coxph(as.formula(paste("Surv(time_s, finished) ~", terms)), trials))
   }
   outside <- function(factors) {
-    terms <- paste(factors, collapse = " + ")
+    terms <- paste(c(factors, covariates), collapse = " + ")
     without("infinite|converge", coxph(as.formula(paste("Surv(time_s, finished) ~", terms)), trials, cluster = participant_id))
   }
   rows <- list()
+  all_p <- numeric()
   infinite <- FALSE
   for (group in Filter(length, list(within, between))) {
     fit <- if (identical(group, within)) inside(group) else outside(group)
@@ -401,6 +455,7 @@ show_censored <- function(id, trials, planned, within = character(), between = c
       chisq <- if (identical(group, within)) 2 * (fit$loglik[2] - likelihood(inside(setdiff(group, factor)))) else
         if (all(finite)) as.numeric(b %*% solve(v, b)) else NA
       p <- pchisq(chisq, length(b), lower.tail = FALSE)
+      all_p[factor] <- p
       infinite <- infinite || any(!finite)
       for (k in seq_along(b)) {
         row <- id %.% "cox" %.% factor %.% k
@@ -411,17 +466,120 @@ show_censored <- function(id, trials, planned, within = character(), between = c
                                if (k == 1) c(num(id %.% "cox" %.% factor %.% "chisq", chisq),
                                              p_value(id %.% "cox" %.% factor %.% "p", p)) else c("", ""))))
       }
-      if (isTRUE((p < 0.05) != (planned[[factor]] < 0.05))) report$warnings[[id %.% "cox" %.% factor]] <- factor
     }
   }
-  para("Of ", count(id %.% "cox.trials", nrow(trials)), " trials ", count(id %.% "cox.timeouts", sum(trials$finished == 0)),
-       " ended without success. The model that knows this, main effects only:")
   html_table(c("Hazard of success (Cox)", "ratio", paste(percent, "interval"), "&chi;&sup2;", "<i>p</i>"), rows)
   if (infinite) para("A ratio without a number has no end: all successes are on one side of it.", class = "note")
-  for (factor in c(within, between)) if (!is.null(report$warnings[[id %.% "cox" %.% factor]]))
+  all_p
+}
+
+count_timeouts <- function(id, trials, ...)
+  para("Of ", count(id %.% "cox.trials", nrow(trials)), " trials ", count(id %.% "cox.timeouts", sum(trials$finished == 0)),
+       " ended without success.", ...)
+
+# The model of censored times beside a planned test of their means, and whether both say the same.
+show_censored <- function(id, trials, planned, within = character(), between = character()) computed(id %.% "cox", {
+  if (!is.numeric(planned)) return(invisible())
+  trials <- trials[!is.na(trials$time_s), ]
+  if (all(trials$finished == 1) || all(trials$finished == 0)) {
+    para("No time was cut off by a time-out, or all were: a model of censored times says nothing more.", class = "note")
+    return(invisible())
+  }
+  count_timeouts(id, trials, " The model that knows this, main effects only:")
+  p <- show_hazards(id, trials, within, between)
+  for (factor in names(p)) if (isTRUE((p[[factor]] < 0.05) != (planned[[factor]] < 0.05))) {
+    report$warnings[[id %.% "cox" %.% factor]] <- factor
     para("The planned test and the model of censored times disagree about ", name(factor), " at the level of ",
          name("5 %"), ". Means of times say less where trials were cut off: report both.", class = "warning")
+  }
 })
+
+# The same as the planned test.
+show_survival <- function(id, trials, within = character(), between = character(), covariates = character()) computed(id, {
+  trials <- trials[!is.na(trials$time_s), ]
+  count_timeouts(id, trials)
+  p <- show_hazards(id, trials, within, between, covariates)
+  sentence("Hazard of success, Cox&rsquo;s model", if (length(within) > 0) " in strata of participants", ": ",
+           paste0(vapply(names(p), function(factor) {
+             of <- id %.% "cox" %.% factor
+             paste0(name(factor), ", &chi;&sup2; = ", again(of %.% "chisq"), ", <i>p</i> ", again_p(of %.% "p"))
+           }, ""), collapse = "; "), ".")
+  p
+})
+
+# A cumulative link mixed model of values in order, main effects, an intercept for each person; and the same without each
+# factor.
+ordinal_model <- function(data, value, factors) {
+  data$rank <- factor(data[[value]], ordered = TRUE)
+  fit <- function(terms) ordinal::clmm(as.formula(paste("rank ~", paste(c("1", terms), collapse = " + "),
+                                                        "+ (1 | participant_id)")), data, nAGQ = 9)
+  list(whole = fit(factors), without = lapply(setNames(factors, factors), function(factor) fit(setdiff(factors, factor))))
+}
+
+show_ordinal <- function(id, fit, data, value, factors) if (!is.null(fit)) computed(id, {
+  b <- coef(summary(fit$whole))
+  rows <- unlist(lapply(factors, function(factor) {
+    levels <- levels(data[[factor]])[-1]
+    lapply(seq_along(levels), function(k) {
+      of <- b[paste0(factor, levels[k]), ]
+      row <- id %.% "odds" %.% factor %.% k
+      bounds <- exp(of[1] + c(-1, 1) * qnorm(0.975) * of[2])
+      c(paste0(name(factor), ": ", name(levels[k]), " against ", name(levels(data[[factor]])[1])),
+        estimate(row, exp(of[1]), bounds[1], bounds[2], "ratio"), num(row %.% "z", of[3]), p_value(row %.% "p", of[4]))
+    })
+  }), recursive = FALSE)
+  html_table(c("Odds of a higher value", "", paste(percent, "interval"), "<i>z</i>", "<i>p</i>"), rows)
+  p <- vapply(factors, function(factor) {
+    less <- fit$without[[factor]]
+    chisq <- 2 * as.numeric(logLik(fit$whole) - logLik(less))
+    df <- length(coef(fit$whole)) - length(coef(less))
+    p <- pchisq(chisq, df, lower.tail = FALSE)
+    at <- id %.% factor
+    num(at %.% "chisq", chisq)
+    degrees(at %.% "df", df)
+    p_value(at %.% "p", p)
+    p
+  }, 0)
+  sentence("Cumulative link mixed model of ", name(value), " with an intercept for each participant: ",
+           paste0(vapply(factors, function(factor) {
+             at <- id %.% factor
+             paste0(name(factor), ", &chi;&sup2;(", again(at %.% "df"), ") = ", again(at %.% "chisq"), ", <i>p</i> ",
+                    again_p(at %.% "p"))
+           }, ""), collapse = "; "), ".")
+  setNames(p, factors)
+})
+
+# Two one-sided t-tests: the difference lies between the bounds if both say so.
+show_equivalence <- function(id, pair, value, factor, bounds, paired) computed(id, {
+  test <- function(...) t.test(pair[[1]], pair[[2]], paired = paired, ...)
+  above <- test(alternative = "greater", mu = bounds[1])
+  below <- test(alternative = "less", mu = bounds[2])
+  both <- test(conf.level = 0.9)
+  difference <- if (paired) mean(pair[[1]] - pair[[2]]) else mean(pair[[1]]) - mean(pair[[2]])
+  p <- max(above$p.value, below$p.value)
+  what <- paste(name(names(pair)[1]), "&minus;", name(names(pair)[2]))
+  html_table(c("Difference of means", "", paste(name("90 %"), "interval"), "df", "<i>t</i> above the lower bound", "<i>p</i>",
+               "<i>t</i> below the upper bound", "<i>p</i>"),
+             list(c(what, estimate(id, difference, both$conf.int[1], both$conf.int[2]), degrees(id %.% "df", both$parameter),
+                    num(id %.% "above.t", above$statistic), p_value(id %.% "above.p", above$p.value),
+                    num(id %.% "below.t", below$statistic), p_value(id %.% "below.p", below$p.value))))
+  sentence("The mean difference ", what, " of ", name(value), " was ", again(id %.% "estimate"), ", ", name("90 %"), " CI ",
+           again_interval(id %.% "estimate"), "; that it lies from ", num(id %.% "bound.lo", bounds[1]), " to ",
+           num(id %.% "bound.hi", bounds[2]), ", as was planned to mean equal: <i>p</i> ", shown_p(id %.% "p", p), ".")
+  setNames(p, factor)
+})
+
+# All p values of a family, adjusted together by Holm.
+show_family <- function(family, tests) {
+  p <- unlist(Filter(is.numeric, tests))
+  if (length(p) == 0) return(invisible())
+  adjusted <- p.adjust(p, "holm")
+  html_table(c("Analysis and factor", "<i>p</i>", "Holm"), caption = paste("Family", name(family)),
+             lapply(seq_along(p), function(i) {
+    of <- "family" %.% family %.% names(p)[i]
+    c(name(names(p)[i]), p_value(of %.% "p", p[i]), p_value(of %.% "p_holm", adjusted[i]))
+  }))
+}
 
 # Of a model's maximum; of one without terms, all of the likelihood that there is.
 likelihood <- function(fit) fit$loglik[length(fit$loglik)]

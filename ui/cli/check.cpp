@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "analysis/report/preregistration.h"
 #include "core/base/regular_file.h"
 #include "study/protocol/questionnaire_reader.h"
 #include "study/run/files/known_names.h"
@@ -50,6 +51,15 @@ int check(const CheckArguments& options) {
                plan.version, plan::plannedConditions(plan), session::mayEndEarly(plan) ? "at most " : "", trials,
                plan.participants);
     fmt::print("{}", session::staircasesText(plan));
+    return 0;
+}
+
+int planStudy(const PlanArguments& options) {
+    ProgressLine progress;
+    const auto plan = progress.whileReading(options.protocol,
+                                            [&] { return run::readProtocol(options.protocol, options.import_limits); });
+    if (!plan) return fail(plan.errors());
+    fmt::print("{}", report::preregistrationOf(*plan));
     return 0;
 }
 

@@ -95,6 +95,11 @@ private:
         sub->add_option("--db", explain_.database,
                         "database of the study: what accuracy = \"auto\" picked there is shown, not measured anew");
 
+        sub = command("plan", "print the preregistration of a study: what is measured, tested and left out", plan_,
+                      planStudy);
+        sub->add_option("PROTOCOL", plan_.protocol, "study file (.toml)")->required();
+        addImport(sub, plan_.import_limits);
+
         sub = command("run", "perform a study with simulated participants", run_, passung::cli::run);
         sub->add_option("PROTOCOL", run_.protocol, "study file (.toml)")->required();
         addImport(sub, run_.import_limits);
@@ -264,7 +269,9 @@ private:
                       report_, reportData);
         sub->add_option("DB", report_.database, "database of a study")->required();
         sub->add_option("--out", report_.out, "folder of the report")->required();
-        sub->add_flag("--no-samples", report_.no_samples, "leave out the recorded ticks");
+        report_.no_samples = true;
+        sub->add_flag("!--samples,--no-samples", report_.no_samples,
+                      "with --samples every recorded tick too; default: those that the pictures show");
         addGroup(sub, report_.group);
 
         sub = command("merge", "put the databases of several stations together", merge_, merge);
@@ -576,6 +583,7 @@ private:
     CLI::App app_;
     std::function<int()> chosen_;
     CheckArguments check_;
+    PlanArguments plan_;
     ExplainArguments explain_;
     RunArguments run_;
     ParticipantArguments participant_;

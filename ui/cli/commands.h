@@ -21,6 +21,13 @@ struct CheckArguments {
 };
 int check(const CheckArguments& options);
 
+struct PlanArguments {
+    std::string protocol;
+    run::ImportLimits import_limits;
+};
+/// The study as a text to be registered before its first participant.
+int planStudy(const PlanArguments& options);
+
 struct ExplainArguments {
     std::string file;      // protocol or scene
     int participants = 0;  // 0: as many as the protocol plans

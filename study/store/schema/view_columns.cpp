@@ -85,7 +85,7 @@ Columns trialColumns() {
          "1 if cells_long.csv and the wide tables count the attempt",
          {},
          "valid = 1, phase = main, outcome success, failure or timeout, and counted = 1 of the session in "
-         "sessions.csv"},
+         "sessions.csv; in exports besides left out by no [[exclude]] of the protocol"},
         {"not_counted_because",
          std::string("CASE WHEN pa.status='excluded' THEN 'the participant is excluded' WHEN t.phase='adaptive' THEN "
                      "'trial of a staircase: see thresholds.csv' WHEN t.phase='catch' THEN 'catch trial' WHEN "

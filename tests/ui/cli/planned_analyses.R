@@ -5,14 +5,19 @@ table <- function(file) read.csv(file.path(folder, file), stringsAsFactors = FAL
 
 people <- unique(subset(table("sessions.csv"), counted == 1)$participant_id)
 analyses <- table("analyses.csv")
+trials <- table("trials.csv")
 stopifnot(c("r_formula", "r_call") %in% names(analyses))
 dropped <- nrow(analyses) == 0
 for (i in seq_len(nrow(analyses))) {
   planned <- analyses[i, ]
   rows <- subset(table(planned$file), protocol_sha256 == planned$protocol_sha256)
-  rows <- if (is.na(planned$staircase)) subset(rows, block == planned$block) else
-    subset(rows, staircase == planned$staircase)
+  if (!is.na(planned$staircase)) rows <- subset(rows, staircase == planned$staircase)
+  if (!is.na(planned$block)) rows <- subset(rows, block == planned$block)
   factors <- if (is.na(planned$factors) || planned$factors == "") character() else strsplit(planned$factors, ";")[[1]]
+  if (planned$file == "questionnaire_scores.csv") {  # levels are those of the condition that a form is about
+    rows <- subset(rows, counted == 1 & paste0(questionnaire, ".", scale) == planned$outcome)
+    for (f in setdiff(factors, "block")) rows[[f]] <- trials[[f]][match(rows$condition, trials$condition)]
+  }
   by <- lapply(rows[c("participant_id", factors)], factor)
   cells <- aggregate(rows[planned$value_column], by, mean, na.rm = TRUE)
   cells <- cells[complete.cases(cells), ]

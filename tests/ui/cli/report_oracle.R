@@ -1,17 +1,18 @@
 # The planned tests of a study once more, in base R, from trials.csv and codebook.csv alone:
-#   Rscript report_oracle.R FOLDER SPEC EXCLUDED
-# SPEC: a table of what the test planned: analysis, outcome, block, test, horizon_s, within, between (; between names).
-# EXCLUDED: codes, parted by commas. Says what differs from the results.json in FOLDER; exit code 1 if anything does.
+#   Rscript report_oracle.R FOLDER SPEC RULES EXCLUDED
+# SPEC: a table of what the test planned: analysis, outcome, block, test, horizon_s, within, between (; between names) and
+# more. RULES: what is left out by value: data, value, below, above. EXCLUDED: codes, parted by commas. Says what differs from the results.json in FOLDER; exit code 1 if anything does.
 # Truth: the definitions of the statistics, written out: products of survival, sums of squares, exact distributions by
 # listing all cases, likelihoods by their closed form. No package, no function of R that does the test as a whole.
 arguments <- commandArgs(trailingOnly = TRUE)
 folder <- arguments[1]
 spec <- read.csv(arguments[2], colClasses = "character", na.strings = NULL)
-excluded <- strsplit(arguments[3], ",")[[1]]
+rules <- read.csv(arguments[3], colClasses = "character", na.strings = NULL)
+excluded <- strsplit(arguments[4], ",")[[1]]
 
 codebook <- read.csv(file.path(folder, "codebook.csv"), colClasses = "character", na.strings = NULL)
 trials <- read.csv(file.path(folder, "trials.csv"), colClasses = "character", na.strings = "NA")
-levels_of <- function(factor) strsplit(codebook$levels[codebook$file == "trials.csv" & codebook$column == factor], "; ", fixed = TRUE)[[1]]
+levels_of <- function(factor) if (factor == "block") c("main", "again") else strsplit(codebook$levels[codebook$file == "trials.csv" & codebook$column == factor], "; ", fixed = TRUE)[[1]]
 
 # results.json has a number a line; the list of results ends before the list of cells.
 lines <- readLines(file.path(folder, "results.json"))
@@ -42,13 +43,29 @@ restricted_mean <- function(time, finished, horizon) {
 
 counts <- trials$valid == "1" & trials$phase == "main" & trials$outcome %in% c("success", "failure", "timeout") & !(trials$participant_id %in% excluded)
 people <- sort(unique(trials$participant_id[!(trials$participant_id %in% excluded)]))
+is_outside <- function(rule, x) !is.na(x) & ((rule$below != "" & x < suppressWarnings(as.numeric(rule$below))) %in% TRUE |
+                                              (rule$above != "" & x > suppressWarnings(as.numeric(rule$above))) %in% TRUE)
+for (i in which(rules$data == "trials")) counts <- counts & !is_outside(rules[i, ], as.numeric(trials[[rules$value[i]]]))
+for (i in which(rules$data == "participants")) {
+  x <- as.numeric(trials[[rules$value[i]]])
+  means <- sapply(people, function(p) mean(x[counts & trials$participant_id == p], na.rm = TRUE))
+  people <- people[!is_outside(rules[i, ], means)]
+}
+counts <- counts & trials$participant_id %in% people
+# The mean of the six ratings of each form.
+items <- read.csv(file.path(folder, "questionnaire_items.csv"), colClasses = "character", na.strings = "NA")
+workload <- function(p) {
+  its <- items[items$participant_id == p & items$questionnaire == "nasa_tlx_raw", ]
+  mean(tapply(as.numeric(its$value), its$condition, mean))
+}
 
 # A matrix: a row a person who has all, a column a combination of the within factors, the first one slowest.
 cells_of <- function(plan, within) {
-  rows <- trials[counts & trials$block == plan$block, ]
+  if (plan$outcome == "nasa_tlx_raw.workload") return(list(at = data.frame(all = 1), y = matrix(sapply(people, workload), dimnames = list(people, NULL))))
+  rows <- trials[counts & (plan$block == "" | trials$block == plan$block), ]
   value <- as.numeric(rows[[plan$outcome]])
   finished <- as.numeric(rows$finished)
-  condition <- rows$condition
+  condition <- paste(rows$condition, rows$block)
   by_condition <- sapply(unique(condition), function(c) sapply(people, function(p) {
     its <- rows$participant_id == p & condition == c & !is.na(value)
     if (!any(its)) NA else if (plan$outcome == "time_s") restricted_mean(value[its], finished[its], as.numeric(plan$horizon_s)) else mean(value[its])
@@ -61,6 +78,7 @@ cells_of <- function(plan, within) {
     rowMeans(by_condition[, of, drop = FALSE], na.rm = TRUE)
   })
   cells <- matrix(cells, length(people), dimnames = list(people, NULL))
+  if (plan$transform == "log") cells <- log(cells)
   list(at = at, y = cells[!apply(is.nan(cells) | is.na(cells), 1, any), , drop = FALSE])
 }
 
@@ -167,9 +185,56 @@ tests <- list(
     p <- sapply(seq_len(ncol(pairs)), function(i) check_signed_ranks(paste0(id, ".pair.", within, ".", i), cells$y[, pairs[1, i]] - cells$y[, pairs[2, i]]))
     for (i in seq_along(p)) expect(paste0(id, ".pair.", within, ".", i, ".p_holm"), holm(p)[i])
   },
-  rm_anova = function(id, cells, plan, within, between) check_anova(id, cells, within, between),
+  rm_anova = function(id, cells, plan, within, between) check_anova(id, cells, within, between, plan$contrast),
+  equivalence = function(id, cells, plan, within, between) check_equivalence(id, cells, plan, between),
+  survival = function(id, cells, plan, within, between) check_cox(id, plan, rownames(cells$y), within),
   mixed_anova = function(id, cells, plan, within, between) check_anova(id, cells, within, between),
-  lmm = function(id, cells, plan, within, between) check_lmm(id, cells, within, between))
+  lmm = function(id, cells, plan, within, between)
+    if (plan$covariate == "") check_lmm(id, cells, within, between) else check_reml(id, cells, plan, within))
+
+# Two one-sided tests of a difference against its bounds.
+check_equivalence <- function(id, cells, plan, between) {
+  if (length(between) == 0) {
+    d <- cells$y[, 1] - cells$y[, 2]
+    estimate <- mean(d); se <- sqrt(sum((d - mean(d))^2) / (length(d) - 1) / length(d)); df <- length(d) - 1
+  } else {
+    group <- as.integer(group_of(rownames(cells$y), between)[[1]])
+    v <- sapply(1:2, function(g) { x <- cells$y[group == g, 1]; sum((x - mean(x))^2) / (length(x) - 1) / length(x) })
+    estimate <- mean(cells$y[group == 1, 1]) - mean(cells$y[group == 2, 1])
+    se <- sqrt(sum(v)); df <- sum(v)^2 / sum(v^2 / (tabulate(group) - 1))
+  }
+  low <- (estimate - as.numeric(plan$low)) / se; high <- (estimate - as.numeric(plan$high)) / se
+  expect(paste0(id, ".estimate"), estimate)
+  expect(paste0(id, ".estimate.lo"), estimate - qt(0.95, df) * se)
+  expect(paste0(id, ".estimate.hi"), estimate + qt(0.95, df) * se)
+  expect(paste0(id, ".above.t"), low)
+  expect(paste0(id, ".below.t"), high)
+  expect(paste0(id, ".p"), max(pt(low, df, lower.tail = FALSE), pt(high, df)))
+}
+
+# One intercept for each person and a covariate: the restricted likelihood of the variances, climbed by hand.
+check_reml <- function(id, cells, plan, within) {
+  rows <- trials[counts & trials$block == plan$block & trials$participant_id %in% rownames(cells$y), ]
+  place <- as.vector(sapply(seq_len(nrow(cells$at)), function(i) {
+    its <- Reduce(`&`, lapply(within, function(f) rows[[f]] == cells$at[[f]][i]))
+    sapply(rownames(cells$y), function(p) mean(as.numeric(rows$order_position[its & rows$participant_id == p])))
+  }))
+  n <- nrow(cells$y); k <- ncol(cells$y); y <- as.vector(cells$y)
+  x <- cbind(1, sapply(seq_len(k)[-1], function(i) as.numeric(rep(seq_len(k), each = n) == i)), place)
+  same <- outer(rep(seq_len(n), k), rep(seq_len(n), k), "==")
+  parts <- function(ratio) {
+    v <- diag(n * k) + ratio * same
+    w <- solve(v)
+    b <- solve(t(x) %*% w %*% x, t(x) %*% w %*% y)
+    r <- y - x %*% b
+    s2 <- as.numeric(t(r) %*% w %*% r) / (n * k - ncol(x))
+    list(s2 = s2, loss = as.numeric(determinant(v)$modulus + determinant(t(x) %*% w %*% x)$modulus) + (n * k - ncol(x)) * log(s2))
+  }
+  ratio <- exp(optimize(function(l) parts(exp(l))$loss, c(-14, 8), tol = 1e-9)$minimum)
+  if (parts(0)$loss <= parts(ratio)$loss) ratio <- 0
+  expect(paste0(id, ".sd_residual"), sqrt(parts(ratio)$s2), 1e-3)
+  expect(paste0(id, ".sd_participants"), sqrt(ratio * parts(ratio)$s2), 5e-3)
+}
 
 orthonormal <- function(k) apply(contr.helmert(k), 2, function(c) c / sqrt(sum(c^2)))
 
@@ -217,7 +282,7 @@ find_id <- function(id, factors, what) {
   if (length(hit) == 1) hit else paste0(id, ".", paste(factors, collapse = ":"), ".", what)
 }
 
-check_differences <- function(id, cells, within, between) {
+check_differences <- function(id, cells, within, between, contrast = "") {
   y <- cells$y
   groups <- if (length(between) > 0) group_of(rownames(y), between)
   cell <- if (length(between) > 0) interaction(groups, drop = TRUE) else factor(rep(1, nrow(y)))
@@ -228,6 +293,14 @@ check_differences <- function(id, cells, within, between) {
   at <- if (length(between) > 0) groups[match(levels(cell), cell), , drop = FALSE]
   for (f in c(within, between)) {
     k <- length(levels_of(f)); pairs <- combn(k, 2)
+    if (contrast != "") {
+      of <- strsplit(contrast, ": | - ")[[1]]
+      if (of[1] != f) {
+        if (any(startsWith(names(results), paste0(id, ".pair.", f)))) wrong <<- c(wrong, paste(id, f, "has differences that are not planned"))
+        next
+      }
+      pairs <- matrix(match(of[2:3], levels_of(f)), 2)
+    }
     rows <- lapply(seq_len(ncol(pairs)), function(i) {
       weight <- function(which) { w <- which / sum(which) }
       a <- levels_of(f)[pairs[1, i]]; b <- levels_of(f)[pairs[2, i]]
@@ -247,7 +320,7 @@ check_differences <- function(id, cells, within, between) {
   }
 }
 
-check_anova <- function(id, cells, within, between) {
+check_anova <- function(id, cells, within, between, contrast = "") {
   strata <- Filter(Negate(is.null), strata_of(cells$y, within, between))
   key <- sapply(strata, function(s) paste(s$within, collapse = ":"))
   all_errors <- sum(sapply(strata[!duplicated(key)], function(s) sum(diag(s$error))))
@@ -264,7 +337,7 @@ check_anova <- function(id, cells, within, between) {
       expect(at("gg_p"), pf(f, s$df1 * epsilon, s$df2 * epsilon, lower.tail = FALSE))
     }
   }
-  check_differences(id, cells, within, between)
+  check_differences(id, cells, within, between, contrast)
 }
 
 # Balanced data and one intercept for each person: where persons differ more than residuals do, REML is the classical
@@ -384,7 +457,14 @@ for (i in seq_len(nrow(spec))) {
     check_cell(paste0(id, ".cell.", number), cells$y[row, column])
   }
   tests[[plan$test]](id, cells, plan, within, between)
-  if (plan$outcome == "time_s" && length(between) == 0) check_cox(id, plan, persons, within)
+  if (plan$outcome == "time_s" && length(between) == 0 && plan$test != "survival") check_cox(id, plan, persons, within)
+}
+# p values of a family, as they stand, by Holm.
+its <- spec[spec$family != "", ]
+if (nrow(its) > 0) {
+  of <- paste0("family.", its$family, ".a", its$analysis, ".", its$factors)
+  adjusted <- holm(results[paste0("a", its$analysis, ".p")])
+  for (i in seq_along(of)) expect(paste0(of[i], ".p_holm"), adjusted[[i]])
 }
 if (length(wrong) > 0) cat(wrong, sep = "\n")
 cat(sprintf("%d numbers compared, %d wrong\n", compared, length(wrong)))

@@ -19,9 +19,11 @@ ids <- sub("^<span data-result=\"([^\"]*)\">.*$", "\\1", spans)
 shown <- gsub("<sup>(.*?)</sup>", "e\\1", sub("^<span[^>]*>(.*)</span>$", "\\1", spans))
 shown <- gsub("\u2009|&thinsp;|&#8201;", "", gsub("\u2212|&minus;", "-", shown))
 shown <- gsub("(\u00d7|&times;)10e", "e", shown)
+values <- unname(results)[match(ids, names(results))]
+known <- ids %in% names(results)
 for (i in seq_along(spans)) {
-  if (!(ids[i] %in% names(results))) { wrong <- c(wrong, paste(ids[i], "is no id of results.json")); next }
-  value <- results[[ids[i]]]
+  if (!known[i]) { wrong <- c(wrong, paste(ids[i], "is no id of results.json")); next }
+  value <- values[i]
   if (shown[i] %in% c("\u2013", "&ndash;")) { if (!is.na(value)) wrong <- c(wrong, paste(ids[i], "is not shown")); next }
   if (grepl("\u221e|&infin;", shown[i])) next
   if (grepl("^(&lt;|<)0[.]001$", shown[i])) { if (!(value < 0.001)) wrong <- c(wrong, paste(ids[i], "is not so small")); next }
