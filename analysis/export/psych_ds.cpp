@@ -52,6 +52,7 @@ std::string psychDsDescription(const StudyData& study, std::span<const Table> ta
             variable.unit = column.unit;
         }
     std::vector<std::string> list;
+    list.reserve(variables.size());
     for (const auto& [name, variable] : variables) list.push_back(variableJson(name, variable));
     std::string title = "Study";
     if (!study.protocols.empty())
