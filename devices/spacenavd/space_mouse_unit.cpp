@@ -49,7 +49,7 @@ milliseconds left(Steady::time_point until) {
 std::string socketPath(const std::string& address) {
     if (!address.empty()) return address;
     if (const char* path = std::getenv("SPNAV_SOCKET"); path != nullptr && *path != '\0') return path;
-    if (const std::string path = socketOf(kSettings); !path.empty()) return path;
+    if (std::string path = socketOf(kSettings); !path.empty()) return path;
     return kUsualSocket;
 }
 

@@ -141,7 +141,7 @@ TEST_P(LinkedUnitFault, TakesTheForceAtOnceIsToldOnceAndNeedsToBeArmed) {
     Bench bench;
     bench.push();
     bench.script.say(GetParam().answers);
-    for (int i = 0; i < 4000 && bench.unit->state() == DeviceState::Ready; ++i) bench.tick();
+    for (int i = 0; i < 400000 && bench.unit->state() == DeviceState::Ready; ++i) bench.tick();
     ASSERT_EQ(bench.unit->state(), GetParam().state);
     for (int i = 0; i < 20; ++i) bench.tick();
     EXPECT_EQ(bench.notZeroSince(GetParam().state), 0);
