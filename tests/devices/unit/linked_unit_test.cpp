@@ -28,7 +28,7 @@ LinkedParams params() {
     p.description.max_force_N = 12.0;
     p.description.max_torque_Nm = 0.2;
     p.first_retry = std::chrono::milliseconds(1);
-    p.stale_after = p.frozen_after = std::chrono::milliseconds(20);
+    p.stale_after = p.frozen_after = std::chrono::milliseconds(100);
     return p;
 }
 
@@ -80,9 +80,13 @@ struct Bench {
             if (news.isLoss()) all.push_back(news);
         return all;
     }
-    Wrench last() {
-        const std::lock_guard lock(script.mutex);
-        return script.got.back();
+    /// A wrench comes through; of one that a busy machine brings late nothing does (kHeartbeat).
+    bool pushes() {
+        return reached([&] {
+            tick();
+            const std::lock_guard lock(script.mutex);
+            return !isZero(script.got.back());
+        });
     }
 };
 
@@ -98,10 +102,9 @@ TEST(LinkedUnit, IsPresentUntilItIsArmedAndGivesNoForceBefore) {
     EXPECT_EQ(bench.notZeroSince(DeviceState::Present), 0);
     bench.unit->arm();
     ASSERT_TRUE(bench.becomes(DeviceState::Ready));
-    bench.tick();
-    EXPECT_TRUE(bench.tick().fresh);
+    EXPECT_TRUE(reached([&] { return bench.tick().fresh; }));
     EXPECT_TRUE(bench.unit->status().commanded);
-    EXPECT_FALSE(isZero(bench.last()));
+    EXPECT_TRUE(bench.pushes());
 }
 
 TEST(LinkedUnit, GetsNoForceBetweenAttempts) {
@@ -155,8 +158,7 @@ TEST_P(LinkedUnitFault, TakesTheForceAtOnceIsToldOnceAndNeedsToBeArmed) {
     EXPECT_EQ(bench.notZeroSince(GetParam().state), 0) << "not armed";
     bench.unit->arm();
     ASSERT_TRUE(bench.becomes(DeviceState::Ready));
-    for (int i = 0; i < 3; ++i) bench.tick();
-    EXPECT_FALSE(isZero(bench.last()));
+    EXPECT_TRUE(bench.pushes());
 }
 
 template <class Change>
@@ -212,8 +214,7 @@ TEST(LinkedUnit, IsLookedForAgainWhenItWasUnpluggedAndWaitsToBeArmed) {
     }
     bench.unit->arm();
     ASSERT_TRUE(bench.becomes(DeviceState::Ready));
-    for (int i = 0; i < 3; ++i) bench.tick();
-    EXPECT_FALSE(isZero(bench.last()));
+    EXPECT_TRUE(bench.pushes());
 }
 
 TEST(LinkedUnit, GivesAPoseOnceAndThenIsNotFresh) {
