@@ -43,7 +43,7 @@ protected:
     /// One cycle, and the message that it sends.
     DeviceReading tick(unit::Unit& unit, HaplyService& service, const std::string& device, const Wrench& F = kPush) {
         tremble(service, device);
-        const DeviceReading reading = unit.read();
+        DeviceReading reading = unit.read();
         const std::int64_t before = service.messages();
         unit.command(F);
         for (int i = 0; i < 20 && service.messages() == before; ++i) poll(nullptr, 0, 1);
