@@ -82,7 +82,6 @@ protected:
             if (ended.exit_code != 0) failed += words[0] + ": " + ended.err;
         };
         tell({"run", fileOf(study).string(), "--simulated", "3", "--db", "s.db"});
-        tell({"export", "s.db", "--out", "out", "--no-samples"});
         const WithoutPrograms alone;
         tell({"report", "s.db", "--out", "report"});
         return failed;
@@ -100,9 +99,9 @@ std::string PlannedAnalyses::said_;
 int PlannedAnalyses::code_ = 0;
 
 TEST_P(PlannedAnalyses, KeepEveryCountedPersonInR) {
-    // Truth: independent program (R 4, base: aggregate, complete.cases, aov) on the exported tables; of the database's
-    // views Python's sqlite3 and csv.
-    const fs::path out = folderOf(GetParam()) / "out";
+    // Truth: independent program (R 4, base: aggregate, complete.cases, aov) on the tables of the report, which are
+    // those of an export; of the database's views Python's sqlite3 and csv.
+    const fs::path out = folderOf(GetParam()) / "report";
     int code = 0;
     const std::string views = ask("python3 '" PASSUNG_SOURCE_DIR "/tests/ui/cli/database_views.py' '" +
                                       (folderOf(GetParam()) / "s.db").string() + "' '" + out.string() + "'",

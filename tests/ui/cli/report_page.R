@@ -20,19 +20,16 @@ shown <- gsub("<sup>(.*?)</sup>", "e\\1", sub("^<span[^>]*>(.*)</span>$", "\\1",
 shown <- gsub("\u2009|&thinsp;|&#8201;", "", gsub("\u2212|&minus;", "-", shown))
 shown <- gsub("(\u00d7|&times;)10e", "e", shown)
 values <- unname(results)[match(ids, names(results))]
-known <- ids %in% names(results)
-for (i in seq_along(spans)) {
-  if (!known[i]) { wrong <- c(wrong, paste(ids[i], "is no id of results.json")); next }
-  value <- values[i]
-  if (shown[i] %in% c("\u2013", "&ndash;")) { if (!is.na(value)) wrong <- c(wrong, paste(ids[i], "is not shown")); next }
-  if (grepl("\u221e|&infin;", shown[i])) next
-  if (grepl("^(&lt;|<)0[.]001$", shown[i])) { if (!(value < 0.001)) wrong <- c(wrong, paste(ids[i], "is not so small")); next }
-  number <- suppressWarnings(as.numeric(shown[i]))
-  fraction <- sub("^[^.e]*[.]?", "", sub("e.*$", "", shown[i]))
-  power <- if (grepl("e", shown[i])) as.numeric(sub("^.*e", "", shown[i])) else 0
-  if (is.na(number) || is.na(value) || abs(number - value) > 0.5000001 * 10^(power - nchar(fraction)))
-    wrong <- c(wrong, sprintf("%s shows %s and is %.12g", ids[i], shown[i], value))
-}
+unknown <- !(ids %in% names(results))
+none <- shown %in% c("\u2013", "&ndash;")
+small <- grepl("^(&lt;|<)0[.]001$", shown)
+endless <- grepl("\u221e|&infin;", shown)
+number <- suppressWarnings(as.numeric(shown))
+decimals <- nchar(sub("^[^.e]*[.]?", "", sub("e.*$", "", shown)))
+power <- ifelse(grepl("e", shown), suppressWarnings(as.numeric(sub("^.*e", "", shown))), 0)
+right <- ifelse(none, is.na(values), ifelse(small, values < 0.001, endless | abs(number - values) <= 0.5000001 * 10^(power - decimals)))
+if (any(unknown)) wrong <- c(wrong, paste(ids[unknown], "is no id of results.json"))
+for (i in which(!unknown & !(right %in% TRUE))) wrong <- c(wrong, sprintf("%s shows %s and is %.12g", ids[i], shown[i], values[i]))
 never <- setdiff(names(results), ids)
 if (length(never) > 0) wrong <- c(wrong, paste("never shown:", never))
 

@@ -46,7 +46,7 @@ public:
         chooseFactors();
         RandomStudy study;
         const int groups = between_.size() == 2 ? 4 : between_.size() == 1 ? 2 : 1;
-        study.participants = groups == 1 ? 5 + upTo(2) : groups * 3 + upTo(1);
+        study.participants = groups == 1 ? 5 + upTo(2) : groups * 3 + upTo(3);
         const std::string timeout = std::vector<std::string>{"3.3", "3.6", "6"}[static_cast<std::size_t>(upTo(2))];
         study.protocol = smallStudy("random");
         const auto replace = [&](const std::string& from, const std::string& to, const std::string& by) {
@@ -75,7 +75,7 @@ public:
             "/protocols/questionnaires/nasa_tlx_raw.toml\"\nmoment = \"after_condition\"\nblock = \"main\"\n";
         plan(study, timeout);
         rule(study, "trials", "contact_onsets", "", upTo(1) == 0 ? "40" : "12");
-        rule(study, "participants", "success", "0.2", "");
+        rule(study, "participants", "success", "0.1", "");
         if (upTo(1) == 0) study.excluded = "S00" + std::to_string(1 + upTo(4));
         return study;
     }
