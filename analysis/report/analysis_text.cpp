@@ -369,11 +369,10 @@ std::string blockPictures(const std::string& block, const Names& outcomes) {
                              "plot_courses(" + rows + ")\n") +
                        chunk("paths-" + block + ", fig.height = paths_height(" + rows + ")" + kManyLines,
                              "plot_paths(" + rows + ")\n");
+    const std::string its = "subset(cells, block == " + rText(block) + ")";
     for (const std::string& outcome : outcomes)
-        text += chunk("who-" + block + "-" + outcome +
-                          ", fig.height = matrix_height(subset(cells, block == " + rText(block) + "))",
-                      "plot_matrix(subset(cells, block == " + rText(block) + "), " +
-                          rText(exporter::cellColumn(outcome)) + ")\n");
+        text += chunk(fmt::format("who-{}-{}, fig.height = matrix_height({})", block, outcome, its),
+                      fmt::format("plot_matrix({}, {})\n", its, rText(exporter::cellColumn(outcome))));
     return text;
 }
 
