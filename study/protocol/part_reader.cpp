@@ -78,11 +78,11 @@ shape::Shape buildShape(const TableReader& read, const std::string& kind, double
     if (kind == "square_peg") return shape::SquarePeg{length("width"), length("depth"), length("length"), chamfer};
     if (kind == "keyed_peg")
         return shape::KeyedPeg{fitted, length("length"), length("key_width"), length("key_height"), chamfer};
-    const auto flankAngle = [&] { return read.number("flank_angle_deg") * std::numbers::pi / 180.0; };
     const auto flankHeight = [&] { return read.has("flank_height") ? length("flank_height") : 0.0; };
     if (kind == "thread_bolt")
-        return shape::ThreadBolt{length("nominal_diameter"), length("pitch"), length("length"), chamfer,
-                                 length("clearance"),        flankAngle(),    flankHeight()};
+        return shape::ThreadBolt{
+            length("nominal_diameter"),     length("pitch"), length("length"), chamfer, length("clearance"),
+            read.number("flank_angle_deg"), flankHeight()};
     if (kind == "thread_nut")
         return shape::ThreadNut{length("nominal_diameter"),
                                 length("pitch"),
@@ -90,7 +90,7 @@ shape::Shape buildShape(const TableReader& read, const std::string& kind, double
                                 length("height"),
                                 chamfer,
                                 length("clearance"),
-                                flankAngle(),
+                                read.number("flank_angle_deg"),
                                 flankHeight()};
     const double width = length("width"), depth = length("depth"), height = length("height");
     const double bore_depth = read.text("bore_depth") == "through" ? height : length("bore_depth");
