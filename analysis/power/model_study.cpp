@@ -29,6 +29,7 @@ Result<Done> perform(const plan::StudyPlan& plan, const std::string& code, const
     session.participant_id = code;
     session.ordinal = part;
     session.end_state = "complete";
+    session.counted = true;
     for (const design::PlannedTrial& trial : *trials) {
         const std::string purpose = "model|" + std::to_string(part) + '|' + std::to_string(trial.trial_index);
         Random random(streamSeed(plan.name, code, trial.phase, "simulated|" + purpose, plan.seed));
