@@ -39,7 +39,7 @@ struct Bench {
     Script script;
     std::unique_ptr<LinkedUnit> unit;
 
-    explicit Bench(LinkedParams p = params()) {
+    explicit Bench(const LinkedParams& p = params()) {
         script.answers = trembling;
         unit = std::make_unique<LinkedUnit>(std::make_unique<ScriptedLink>(script), p);
         const std::lock_guard lock(script.mutex);
@@ -60,7 +60,7 @@ struct Bench {
     /// One cycle of a loop, and an exchange of the unit's thread.
     DeviceReading tick(const Wrench& F = kPush) {
         const std::size_t before = script.count();
-        const DeviceReading reading = unit->read();
+        DeviceReading reading = unit->read();
         unit->command(F);
         reached([&] { return script.count() > before || unit->state() == DeviceState::Lost; });
         return reading;
