@@ -75,7 +75,8 @@ std::string taskJson(const plan::Task& task) {
     if (!task.target.empty()) json.text("target", task.target);
     std::visit(FormJson{json}, task.form);
     json.number("timeout_s", task.timeout).number("leave_radius_m", task.leave_radius);
-    json.number("motion_bandwidth_hz", task.motion_bandwidth);
+    if (task.motion_bandwidth != plan::Task{}.motion_bandwidth)  // conditions of earlier versions stay what they are
+        json.number("motion_bandwidth_hz", task.motion_bandwidth);
     if (const auto* peg = std::get_if<plan::PegInHoleTask>(&task.form))
         json.number("engagement_depth_m", peg->engagement_depth);
     return json.str();
