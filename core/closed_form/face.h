@@ -39,8 +39,8 @@ Face sphere(const Vec3& centre, double radius);
 Face torus(const Vec3& centre, const Vec3& axis, double radius, double tube);
 
 /// The flank of a ridge whose middle is at z = lead φ + `middle` and which is half as wide as the pitch at `radius`,
-/// with `run` along the axis per its height; above the ridge or below it. It widens by 1/√3 a length inwards, or
-/// outwards (hollow). `least`: radius from which on the gradient is at most 1 long.
+/// above it or below. The ridge widens on either side by `run` a length inwards, or outwards (hollow). `least`: radius
+/// from which on the gradient is at most 1 long.
 Face flank(double pitch, double radius, double run, double middle, bool above, bool hollow, double least);
 
 // Of a flank at a height and an angle about the axis. rt-safe.

@@ -85,8 +85,8 @@ inline constexpr double kNearWays = 4.0, kLeastNear = 4e-3;  // [m]
 /// A start in overlap comes out by kRepair a solve, the deepest contacts first.
 /// Friction: each look's motion is that of motion/friction.h under the same rows and the same B, of which friction has
 /// no part: where a look finds u = 0 all forces balance whatever B is. What slid in the last look that was made slides
-/// on; a solve whose first look makes no way is a rest. A contact is a foot, without torsion of its own. What a solver
-/// knows of earlier poses changes its time, never its result.
+/// on; a solve whose first look makes no way is a rest. Contacts within kHeldGap are feet, all alike, and bear torsion.
+/// What a solver knows of earlier poses changes its time, never its result.
 class PoseSolver {
 public:
     /// The held part's pairs, with one metric. Their solids outlive this. `near`: of the same parts, in this order;
