@@ -96,6 +96,17 @@ Followed follow(const scene::SceneSpec& spec) {
     return result;
 }
 
+/// Whatever rubs.
+void expectSmoothWithoutOverlap(const Followed& followed) {
+    EXPECT_LE(followed.deepest, 1e-7);
+    EXPECT_LE(followed.beyond, 0.05);
+    // Beside the play of the flanks a tilt lifts the axis by no more than it lifts the crests.
+    EXPECT_LE(followed.off, kPlay);
+    if (support::RtGuard::available()) {
+        EXPECT_EQ(followed.violations, 0);
+    }
+}
+
 class BoltUnderGodObject : public testing::TestWithParam<ContactMethod> {};
 
 TEST_P(BoltUnderGodObject, TurnsInSmoothlyWithoutOverlap) {
@@ -104,15 +115,9 @@ TEST_P(BoltUnderGodObject, TurnsInSmoothlyWithoutOverlap) {
     const auto spec = boltInNut(GetParam());
     ASSERT_EQ(scene::geometryOf(spec).geometry, scene::Geometry::ClosedForm);
     const Followed followed = follow(spec);
-    EXPECT_LE(followed.deepest, 1e-7);
-    EXPECT_LE(followed.beyond, 0.05);
+    expectSmoothWithoutOverlap(followed);
     EXPECT_LT(followed.turned, -2.9 * 2.0 * std::numbers::pi);
-    // Beside the play of the flanks a tilt lifts the axis by no more than it lifts the crests.
-    EXPECT_LE(followed.off, kPlay);
     EXPECT_EQ(followed.late, 0);
-    if (support::RtGuard::available()) {
-        EXPECT_EQ(followed.violations, 0);
-    }
 }
 
 TEST_P(BoltUnderGodObject, TurnsInAgainstFriction) {
@@ -124,15 +129,10 @@ TEST_P(BoltUnderGodObject, TurnsInAgainstFriction) {
     }
     ASSERT_EQ(scene::geometryOf(spec).geometry, scene::Geometry::ClosedForm);
     const Followed followed = follow(spec);
-    EXPECT_LE(followed.deepest, 1e-7);
-    EXPECT_LE(followed.beyond, 0.05);
+    expectSmoothWithoutOverlap(followed);
     EXPECT_LT(followed.turned, -2.5 * 2.0 * std::numbers::pi);
-    EXPECT_LE(followed.off, kPlay);
     EXPECT_LT(followed.work, -0.01);
     EXPECT_LE(followed.late, kTicks / 5);  // rows of friction are counted, and end a tick
-    if (support::RtGuard::available()) {
-        EXPECT_EQ(followed.violations, 0);
-    }
 }
 
 INSTANTIATE_TEST_SUITE_P(GodObjects, BoltUnderGodObject,
