@@ -20,6 +20,8 @@ void keepTrialsOnly(plan::StudyPlan& plan) {
     plan.consent.clear();
     plan.instructions.clear();
     plan.questionnaires.clear();
+    plan.analyses.clear();
+    plan.data_rules.clear();
 }
 
 /// Takes from another reading of the draft's text what follows from stable maxima, if the kept ones are others.
