@@ -180,7 +180,8 @@ show_measures <- function(cells, columns) {
     html("<details><summary>Block ", name(block), ": means of all measures</summary>")
     for (column in shown) {
       id <- "measure" %.% block %.% column
-      html_table(c(label_of("cells_long.csv", column), "n", "mean", "sd"), lapply(seq_along(conditions), function(i) {
+      head <- c(name(label_of("cells_long.csv", column)), "n", "mean", "sd")
+      html_table(head, lapply(seq_along(conditions), function(i) {
         x <- its[[column]][its$condition == conditions[i]]
         x <- x[!is.na(x)]
         c(name(conditions[i]), count(id %.% i %.% "n", length(x)),
