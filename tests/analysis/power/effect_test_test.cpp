@@ -50,6 +50,7 @@ void append(exporter::StudyData& study, const std::string& code, const std::vect
     }
     store::SessionRow session;
     session.participant_id = session.session_id = code;
+    session.counted = true;
     study.sessions.push_back(session);
 }
 
