@@ -99,12 +99,11 @@ void LinkedUnit::arm() { armed_.store(true); }
 void LinkedUnit::lend(const Pose& X_BD_start) {
     handle_.X_BD = X_BD_start;
     last_commanded_ = {};
-    lent_.store(true);
+    loans_.fetch_add(1);
 }
 
 void LinkedUnit::giveBack() {
-    lent_.store(false);
-    command({});
+    if (loans_.fetch_sub(1) == 1) command({});
 }
 
 void LinkedUnit::main() {
@@ -178,7 +177,7 @@ void LinkedUnit::isSound() {
 
 /// Waits for the loop's next command, for a while; true if one came.
 bool LinkedUnit::awaitCommand() {
-    if (!command_came_.try_acquire_for(lent_.load() ? kHeartbeat : kKeepAlive)) return false;
+    if (!command_came_.try_acquire_for(isLent() ? kHeartbeat : kKeepAlive)) return false;
     while (command_came_.try_acquire()) {  // of several the newest is in the mailbox
     }
     return true;
@@ -187,7 +186,7 @@ bool LinkedUnit::awaitCommand() {
 /// What may reach the unit now.
 Wrench LinkedUnit::wrenchNow() noexcept {
     const Commanded& newest = commanded_.latest();
-    const bool holds = lent_.load() && now() - newest.at <= in(kHeartbeat);
+    const bool holds = isLent() && now() - newest.at <= in(kHeartbeat);
     return holds ? passed(newest.F_D_B, params_.description, isReady()) : Wrench{};
 }
 

@@ -80,6 +80,7 @@ private:
     std::string flaw(const Said& said, Nanoseconds now) const;
     void become(loop::DeviceState state, const std::string& why);
     void lose(loop::DeviceState state, const std::string& why);
+    bool isLent() const noexcept { return loans_.load() > 0; }
     bool isReady() const noexcept { return state() == loop::DeviceState::Ready; }
 
     const LinkedParams params_;
@@ -87,7 +88,8 @@ private:
 
     // Shared by all.
     std::atomic<loop::DeviceState> state_{loop::DeviceState::Absent};
-    std::atomic<bool> stop_{false}, armed_{false}, lent_{false};
+    std::atomic<bool> stop_{false}, armed_{false};
+    std::atomic<int> loans_{0};  // two for the moment in which an attempt follows another
     loop::Mailbox<Stamped> said_{Stamped{}};
     loop::Mailbox<Commanded> commanded_{Commanded{}};
     std::counting_semaphore<> command_came_{0};

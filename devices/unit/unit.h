@@ -33,8 +33,8 @@ public:
     virtual std::vector<UnitNews> takeNews() = 0;
     virtual void arm() = 0;
 
-    /// An attempt begins with the handle at `X_BD_start`, for whoever has none of its own there, and ends. No loop runs
-    /// at either.
+    /// An attempt begins with the handle at `X_BD_start`, for whoever has none of its own there, and ends; the next one
+    /// may have begun by then. No loop runs at either.
     virtual void lend(const Pose& X_BD_start) = 0;
     virtual void giveBack() = 0;
 };

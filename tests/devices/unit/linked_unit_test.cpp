@@ -118,6 +118,17 @@ TEST(LinkedUnit, GetsNoForceBetweenAttempts) {
     for (std::size_t i = then + 1; i < bench.script.got.size(); ++i) EXPECT_TRUE(isZero(bench.script.got[i]));
 }
 
+TEST(LinkedUnit, AnAttemptKeepsItsForceThoughTheOneBeforeItEndsLater) {
+    // Truth: invariant: the next attempt's device is made before the last one's is gone.
+    Bench bench;
+    bench.push();
+    auto first = std::make_unique<LentUnit>(*bench.unit, Pose{});
+    bench.unit->giveBack();
+    const LentUnit second(*bench.unit, Pose{});
+    first.reset();
+    EXPECT_TRUE(bench.pushes());
+}
+
 TEST(LinkedUnit, ALoopThatHangsPushesNobody) {
     // Truth: invariant: a wrench holds for kHeartbeat; the unit's thread goes on.
     Bench bench;
