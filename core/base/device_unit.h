@@ -12,6 +12,7 @@ struct DeviceChoice {
     std::string serial = {};   // empty: the only unit of that kind
     std::string address = {};  // of the program that serves it, as the backend writes it; empty: where it is by default
     std::string axes = {};     // of the device, as the backend writes them; empty: the backend's
+    int heartbeat_ms = 5;      // that a wrench holds without the next; in a station file 2 … 50
 };
 
 /// Which unit a session was performed on, as it stores it. Empty: not known.

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "devices/haply/inverse3_unit.h"
+#include "devices/host/hosted_unit.h"
 #include "devices/simulated/presets.h"
 #include "devices/spacenavd/space_mouse_unit.h"
 
@@ -30,8 +31,15 @@ Sighting lookForInverse3(const std::string& address) {
     return found;
 }
 
+Sighting lookForSigma7(const std::string& library) {
+    const auto units = host::lookHosted("dhd", library);
+    if (!units) return {{}, units.errors().front().message};
+    return {*units, {}};
+}
+
 /// Those that push come first.
 constexpr std::array kBackends{
+    Backend{"dhd", "Force Dimension sigma.7 through the vendor's library", "sigma7", lookForSigma7, host::openHosted},
     Backend{"haply", "Haply Inverse3 through the Inverse Service", "inverse3", lookForInverse3, haply::openInverse3},
     Backend{"spacenavd", "3Dconnexion SpaceMouse through spacenavd", "spacemouse", lookForSpaceMouse,
             spacenavd::openSpaceMouse},

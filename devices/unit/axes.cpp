@@ -40,6 +40,10 @@ Vec3 Axes::toDevice(const Vec3& base) const noexcept {
     return device;
 }
 
+bool Axes::mirrors() const noexcept {
+    return toBase(Vec3::UnitX()).cross(toBase(Vec3::UnitY())).dot(toBase(Vec3::UnitZ())) < 0.0;
+}
+
 std::string Axes::text() const {
     std::string text;
     for (std::size_t i = 0; i < 3; ++i) {

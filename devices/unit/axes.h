@@ -20,6 +20,7 @@ public:
 
     Vec3 toBase(const Vec3& device) const noexcept;
     Vec3 toDevice(const Vec3& base) const noexcept;
+    bool mirrors() const noexcept;  // left-handed to right-handed
     std::string text() const;
 
 private:

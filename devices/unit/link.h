@@ -31,7 +31,7 @@ struct Exchange {
     };
     Kind kind = Kind::Silence;
     Said said;
-    std::string why;  // of Stale, Wrong and Gone
+    std::string why;  // of Stale, Wrong and Gone; of News what is to be told beside, if anything
 };
 
 /// The wire to one unit: what differs between backends. Used by one thread of its own; may wait, allocate and throw.

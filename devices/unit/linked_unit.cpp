@@ -139,7 +139,7 @@ void LinkedUnit::serve() {
         const bool looped = awaitCommand();
         if (stop_.load()) return;
         const Wrench given = wrenchNow();
-        const Exchange exchange = link_->exchange(given, looped ? kHeartbeat : kKeepAlive);
+        const Exchange exchange = link_->exchange(given, looped ? params_.heartbeat : kKeepAlive);
         switch (exchange.kind) {
             case Exchange::Kind::Gone:
                 return lose(DeviceState::Lost, exchange.why);
@@ -152,6 +152,7 @@ void LinkedUnit::serve() {
             case Exchange::Kind::News:
                 heard_at = now();
                 if (judge(exchange.said, given)) isSound();
+                if (!exchange.why.empty()) remark(exchange.why);
                 break;
             case Exchange::Kind::Silence:
                 if (params_.gives_speeds) {
@@ -177,7 +178,7 @@ void LinkedUnit::isSound() {
 
 /// Waits for the loop's next command, for a while; true if one came.
 bool LinkedUnit::awaitCommand() {
-    if (!command_came_.try_acquire_for(isLent() ? kHeartbeat : kKeepAlive)) return false;
+    if (!command_came_.try_acquire_for(isLent() ? params_.heartbeat : kKeepAlive)) return false;
     while (command_came_.try_acquire()) {  // of several the newest is in the mailbox
     }
     return true;
@@ -186,7 +187,7 @@ bool LinkedUnit::awaitCommand() {
 /// What may reach the unit now.
 Wrench LinkedUnit::wrenchNow() noexcept {
     const Commanded& newest = commanded_.latest();
-    const bool holds = isLent() && now() - newest.at <= in(kHeartbeat);
+    const bool holds = isLent() && now() - newest.at <= in(params_.heartbeat);
     return holds ? passed(newest.F_D_B, params_.description, isReady()) : Wrench{};
 }
 
@@ -244,6 +245,12 @@ void LinkedUnit::lose(DeviceState state, const std::string& why) {
     const std::lock_guard lock(mutex_);
     if (state == DeviceState::Lost && this->state() != DeviceState::Absent) state_.store(DeviceState::Lost);
     trouble_ = why;
+}
+
+/// Something to be told that changes no state.
+void LinkedUnit::remark(const std::string& what) {
+    const std::lock_guard lock(mutex_);
+    news_.push_back({state(), what});
 }
 
 }  // namespace passung::unit

@@ -20,17 +20,17 @@ struct LinkedParams {
     bool gives_speeds = false;      // velocity control: the handle is ours (RateHandle)
     bool pushes = true;
     int clutch = 0;                               // button, from 1, that lets go of a RateHandle; 0: none
+    std::chrono::milliseconds heartbeat{5};       // that a wrench holds without the next
     std::chrono::milliseconds stale_after{50};    // without a word, while it is lent
     std::chrono::milliseconds frozen_after{200};  // the same values to the last bit, while it is pushed
     std::chrono::milliseconds first_retry{100};   // of looking for it; doubled up to kLastRetry
 };
 
 /// A unit behind a link, which has a thread of its own; the loop reads from a mailbox and commands into another, so
-/// that neither read() nor command() ever waits, whatever the link does. A wrench holds for kHeartbeat and then counts
+/// that neither read() nor command() ever waits, whatever the link does. A wrench holds for a heartbeat and then counts
 /// as zero: a loop that hangs pushes nobody.
 class LinkedUnit final : public Unit {
 public:
-    static constexpr std::chrono::milliseconds kHeartbeat{5};
     static constexpr std::chrono::milliseconds kLastRetry{2000};
     static constexpr std::chrono::milliseconds kKeepAlive{10};  // between two exchanges while no loop runs
 
@@ -80,6 +80,7 @@ private:
     std::string flaw(const Said& said, Nanoseconds now) const;
     void become(loop::DeviceState state, const std::string& why);
     void lose(loop::DeviceState state, const std::string& why);
+    void remark(const std::string& what);
     bool isLent() const noexcept { return loans_.load() > 0; }
     bool isReady() const noexcept { return state() == loop::DeviceState::Ready; }
 

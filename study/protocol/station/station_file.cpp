@@ -28,7 +28,8 @@ Result<std::vector<DeviceChoice>> readStationFile(const std::string& path) {
             }
             const TableReader device(entry.value, {"station_device"}, place, errors);
             devices.push_back({entry.key, device.text("kind"), device.text("backend"), device.text("serial"),
-                               device.text("address"), device.text("axes")});
+                               device.text("address"), device.text("axes"),
+                               static_cast<int>(device.integer("heartbeat_ms"))});
         }
     }
     tidy(errors);
@@ -48,6 +49,8 @@ std::string stationFileText(const std::vector<DeviceChoice>& devices) {
         line("serial", device.serial);
         line("address", device.address);
         line("axes", device.axes);
+        if (device.heartbeat_ms != DeviceChoice{}.heartbeat_ms)
+            text += "heartbeat_ms = " + std::to_string(device.heartbeat_ms) + "\n";
     }
     return text;
 }

@@ -80,7 +80,7 @@ struct Bench {
             if (news.isLoss()) all.push_back(news);
         return all;
     }
-    /// A wrench comes through; of one that a busy machine brings late nothing does (kHeartbeat).
+    /// A wrench comes through; of one that a busy machine brings late nothing does.
     bool pushes() {
         return reached([&] {
             tick();
@@ -130,7 +130,7 @@ TEST(LinkedUnit, AnAttemptKeepsItsForceThoughTheOneBeforeItEndsLater) {
 }
 
 TEST(LinkedUnit, ALoopThatHangsPushesNobody) {
-    // Truth: invariant: a wrench holds for kHeartbeat; the unit's thread goes on.
+    // Truth: invariant: a wrench holds for a heartbeat; the unit's thread goes on.
     Bench bench;
     bench.push();
     const std::size_t then = bench.script.count();

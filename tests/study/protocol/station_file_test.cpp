@@ -25,6 +25,7 @@ TEST(StationFile, SaysWhichUnitServesEachHand) {
 kind = "sigma7"
 backend = "dhd"
 serial = "0815"
+heartbeat_ms = 8
 [station.device.left]
 kind = "spacemouse"
 backend = "spacenavd"
@@ -35,6 +36,8 @@ axes = "x -z y"
     ASSERT_EQ(devices->size(), 2u);
     const DeviceChoice& right = devices->front();
     EXPECT_EQ(right.hand + right.kind + right.backend + right.serial + right.address, "rightsigma7dhd0815");
+    EXPECT_EQ(right.heartbeat_ms, 8);
+    EXPECT_EQ(devices->back().heartbeat_ms, 5) << "where nothing is said";
     EXPECT_EQ(devices->back().hand, "left");
     EXPECT_EQ(devices->back().address, "/run/other.sock");
     EXPECT_EQ(devices->back().axes, "x -z y");
@@ -43,12 +46,13 @@ axes = "x -z y"
 TEST(StationFile, IsReadAsItWasWritten) {
     // Truth: invariant.
     const std::vector<DeviceChoice> devices{{"right", "inverse3", "haply", "04\"D", {}, {}},
-                                            {"left", "spacemouse", "spacenavd", {}, "/run/a b", "x y z"}};
+                                            {"left", "spacemouse", "spacenavd", {}, "/run/a b", "x y z", 7}};
     const auto again = read(stationFileText(devices));
     ASSERT_TRUE(again);
     ASSERT_EQ(again->size(), 2u);
     EXPECT_EQ(stationFileText(*again), stationFileText(devices));
     EXPECT_EQ(again->front().serial, "04\"D");
+    EXPECT_EQ(again->back().heartbeat_ms, 7);
 }
 
 TEST(StationFile, TellsWhatIsWrongAndWhere) {
@@ -61,6 +65,7 @@ TEST(StationFile, TellsWhatIsWrongAndWhere) {
     EXPECT_NE(all.find("3 station.device.right.bakend"), std::string::npos) << all;
     EXPECT_NE(all.find("4 station.device.Left"), std::string::npos) << all;
     EXPECT_FALSE(read("[stations]\n"));
+    EXPECT_FALSE(read("[station.device.right]\nkind = \"sigma7\"\nbackend = \"dhd\"\nheartbeat_ms = 51\n"));
     EXPECT_FALSE(readStationFile("/nonexistent/station.toml"));
 }
 

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "study/store/read/store_reader.h"
+#include "tests/devices/fakes/dhd_block.h"
 #include "tests/devices/fakes/haply_service.h"
 #include "tests/devices/fakes/space_mouse_daemon.h"
 #include "tests/ui/cli/program.h"
@@ -97,6 +98,46 @@ std::string stationOf(const fake::HaplyService& service) {
     return "[station.device.right]\nkind = \"inverse3\"\nbackend = \"haply\"\nserial = \"049D\"\naddress = "
            "\"localhost:" +
            std::to_string(service.port()) + ":" + std::to_string(service.eventPort()) + "\"\n";
+}
+
+/// The same hand at a sigma.7 behind the shim of its library, whose x points to the operator and y to the right.
+class HandAtShim {
+public:
+    explicit HandAtShim(fake::DhdDevice& device) : device_(device), thread_([this] { main(); }) {}
+    ~HandAtShim() {
+        stop_ = true;
+        thread_.join();
+    }
+
+private:
+    void main() {
+        for (int ms = 0; !stop_; ++ms) {
+            const double t = 1e-3 * (ms % 1500);
+            const double way = std::clamp((t - 0.4) / 0.4, 0.0, 1.0) - std::clamp((t - 1.2) / 0.2, 0.0, 1.0);
+            const fake::DhdCommand command = device_.commands.last();
+            const double* felt = command.felt;
+            fake::DhdHand hand;
+            hand.position[0] = felt[0] / 2000.0;
+            hand.position[1] = 0.0013 + felt[1] / 2000.0 + 1e-6 * (ms % 3);  // along the bore's wall
+            hand.position[2] = 0.008 - 0.015 * way + felt[2] / 2000.0;
+            device_.hand.store(hand);
+            poll(nullptr, 0, 1);
+        }
+    }
+
+    fake::DhdDevice& device_;
+    std::atomic<bool> stop_ = false;
+    std::thread thread_;
+};
+
+std::string stationOfShim(const std::string& serial = "4711") {
+    return "[station.device.right]\nkind = \"sigma7\"\nbackend = \"dhd\"\nserial = \"" + serial +
+           "\"\naddress = \"" PASSUNG_DHD_SHIM_FILE "\"\n";
+}
+
+bool isNoForce(const fake::DhdDevice& device) {
+    const fake::DhdCommand last = device.commands.last();
+    return std::all_of(std::begin(last.felt), std::end(last.felt), [](double component) { return component == 0.0; });
 }
 
 std::vector<store::AttemptRow> attemptsOf(const std::filesystem::path& database) {
@@ -217,6 +258,87 @@ TEST(RealDevices, ADevicePulledInContactPausesTheSessionWhichGoesOnWhenItIsBack)
     EXPECT_EQ(events(folder / "s.db", "device_lost").size(), 1u);
 }
 
+TEST(RealDevices, ASigma7RunsTheSameFileAsItsSimulationWithTheSameTables) {
+    // Truth: invariant: same files, columns and rows a trial. The shim's own account says that a force was felt.
+    const TempFolder folder;
+    fake::SharedBlock<fake::DhdBlock> block(fake::kDhdVariable);
+    fake::DhdDevice& device = block->devices[0];
+    writeText(folder / "peg.toml", pegInHole("kind = \"sigma7\"", true));
+    writeText(folder / "station.toml", stationOfShim());
+    {
+        const HandAtShim hand(device);
+        const Ended real = runProgram(folder.path(), {"run", "peg.toml", "--real-time", "--participant", "T001", "--db",
+                                                      "real.db", "--station-file", "station.toml"});
+        ASSERT_EQ(real.exit_code, 0) << real.out << real.err;
+    }
+    const auto attempts = attemptsOf(folder / "real.db");
+    ASSERT_EQ(attempts.size(), 4u);
+    for (const auto& attempt : attempts) {
+        EXPECT_EQ(faultOf(attempt), "");
+        EXPECT_EQ(attempt.device, "sigma7");
+        EXPECT_EQ(attempt.outcome, "success");
+    }
+    EXPECT_TRUE(isNoForce(device));
+    EXPECT_FALSE(device.opened);
+    EXPECT_EQ(device.non_finite, 0);
+    bool pushed = false;
+    const auto count = device.commands.count();
+    for (auto row = std::max<std::int64_t>(0, count - 4000); row < count; ++row)
+        pushed = pushed || device.commands.row(row).felt[1] < -0.05;
+    EXPECT_TRUE(pushed) << "in the last trials";
+
+    const Ended simulated = runProgram(folder.path(), {"run", "peg.toml", "--db", "simulated.db"});
+    ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
+    exportTo(folder, "real.db", "real");
+    exportTo(folder, "simulated.db", "simulated");
+    EXPECT_EQ(filesOf(folder.path() / "real"), filesOf(folder.path() / "simulated"));
+    for (const char* table : {"trials.csv", "sessions.csv"})
+        EXPECT_EQ(shapeOf(folder.path() / "real" / table), shapeOf(folder.path() / "simulated" / table)) << table;
+    const std::string sessions = readText(folder.path() / "real" / "sessions.csv");
+    EXPECT_NE(sessions.find("dhd,4711"), std::string::npos) << sessions;
+}
+
+TEST(RealDevices, ALibraryThatCrashesInContactPausesTheSessionWhichGoesOn) {
+    // Truth: invariant; the shim's own account: the device's watchdog is on, which ends the force of a dead host.
+    const TempFolder folder;
+    fake::SharedBlock<fake::DhdBlock> block(fake::kDhdVariable);
+    fake::DhdDevice& device = block->devices[0];
+    writeText(folder / "peg.toml", pegInHole("kind = \"any\"\nleast_force_N = 3\nleast_degrees = 6", true));
+    writeText(folder / "station.toml", stationOfShim());
+    const HandAtShim hand(device);
+    Program program(
+        folder.path(),
+        {"run", "peg.toml", "--real-time", "--participant", "T001", "--db", "s.db", "--station-file", "station.toml"},
+        true);
+    ASSERT_NE(program.nextAcknowledgement(), "");
+    device.fault = fake::DhdFault::Crash;
+    ASSERT_NE(program.nextAcknowledgement(), "");
+    for (const double felt : fake::feltAfterSilence(device, 20)) EXPECT_EQ(felt, 0.0);
+    EXPECT_FALSE(program.hasEnded());
+    const Ended early = runProgram(folder.path(), {"session", "continue", "s.db"});
+    EXPECT_NE(early.exit_code, 0);
+    EXPECT_NE((early.out + early.err).find("ended by signal 11"), std::string::npos) << early.out << early.err;
+    device.fault = fake::DhdFault::None;
+    Ended goes{};
+    for (int i = 0; i < 200; ++i) {
+        goes = runProgram(folder.path(), {"session", "continue", "s.db"});
+        if (goes.exit_code == 0) break;
+        poll(nullptr, 0, 50);
+    }
+    ASSERT_EQ(goes.exit_code, 0) << goes.out << goes.err;
+    while (program.nextAcknowledgement() != "") {
+    }
+    EXPECT_EQ(program.wait(), 0);
+    const auto attempts = attemptsOf(folder / "s.db");
+    ASSERT_EQ(attempts.size(), 5u);
+    const auto lost = std::count_if(attempts.begin(), attempts.end(), [](const store::AttemptRow& attempt) {
+        return faultOf(attempt).starts_with("device right (dhd 4711)");
+    });
+    EXPECT_EQ(lost, 1);
+    EXPECT_EQ(events(folder / "s.db", "device_lost").size(), 1u);
+    EXPECT_TRUE(isNoForce(device));
+}
+
 TEST(RealDevices, ASpaceMouseRunsTheSameFileAsItsSimulation) {
     // Truth: invariant; independent program (spacenavd 1.1-1 of Debian).
     if (!fake::SpaceMouseDaemon::installed()) GTEST_SKIP() << "no spacenavd is installed";
@@ -305,6 +427,27 @@ TEST(RealDevices, DoctorSaysWhatItFoundAndWritesTheStationFileThatRunTakes) {
         runProgram(folder.path(), {"doctor", "--station-file", "look.toml", "--write-station", "station.toml"});
     EXPECT_EQ(again.exit_code, 1);
     EXPECT_EQ(readText(folder / "station.toml"), written) << "what is there is left as it is";
+}
+
+TEST(RealDevices, DoctorFindsSigma7sOrSaysWhichFileIsMissing) {
+    // Truth: invariant; the serial numbers are the shim's.
+    const TempFolder folder;
+    fake::SharedBlock<fake::DhdBlock> block(fake::kDhdVariable);
+    block->present = 2;
+    writeText(folder / "look.toml", stationOfShim());
+    Ended ended =
+        runProgram(folder.path(), {"doctor", "--station-file", "look.toml", "--write-station", "station.toml"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    EXPECT_NE(ended.out.find("found: sigma.7, serial 4711, SDK 3.17.6.0"), std::string::npos) << ended.out;
+    EXPECT_EQ(readText(folder / "station.toml").substr(readText(folder / "station.toml").find("\n\n") + 2),
+              stationOfShim() + "\n[station.device.left]" + stationOfShim("4712").substr(22));
+    std::string missing = stationOfShim();
+    missing.replace(missing.find("libdhd-shim"), 11, "libnone");
+    writeText(folder / "look.toml", missing);
+    ended = runProgram(folder.path(), {"doctor", "--station-file", "look.toml", "--write-station", "none.toml"});
+    EXPECT_NE(ended.out.find("not found: Force Dimension's library does not load from "), std::string::npos)
+        << ended.out;
+    EXPECT_NE(ended.out.find("libnone.so"), std::string::npos);
 }
 
 }  // namespace
