@@ -8,8 +8,8 @@
 
 #include <cstdio>
 
-#include "devices/host/heartbeat_watch.h"
 #include "devices/host/shared_pages.h"
+#include "devices/unit/heartbeat_watch.h"
 #include "devices/unit/wrench_gate.h"
 
 namespace passung::host {
@@ -17,7 +17,8 @@ namespace {
 
 using unit::Exchange;
 
-constexpr int kPriority = 74;  // below the unit's thread in the study
+constexpr int kPriority = 74;                       // below the unit's thread in the study
+constexpr std::chrono::milliseconds kRecovers{50};  // a study without a heartbeat
 
 std::int64_t now() noexcept {
     timespec t{};
@@ -74,7 +75,7 @@ bool awaitBell() {
     return count != 0 && (bell.revents & (POLLHUP | POLLERR)) == 0;
 }
 
-HostReport reportOf(const Exchange& exchange, const StudyCommand& command, const HeartbeatWatch& watch) {
+HostReport reportOf(const Exchange& exchange, const StudyCommand& command, const unit::HeartbeatWatch& watch) {
     HostReport report;
     report.answers = command.number;
     report.kind = static_cast<std::uint64_t>(exchange.kind);
@@ -99,7 +100,7 @@ Wrench wrenchOf(const StudyCommand& command) {
 }
 
 void serve(unit::Link& link, const DeviceDescription& limits, const Pages& pages) {
-    HeartbeatWatch watch{std::chrono::milliseconds(pages.study->task.heartbeat_ms)};
+    unit::HeartbeatWatch watch{std::chrono::milliseconds(pages.study->task.heartbeat_ms), kRecovers};
     StudyCommand command;
     std::uint64_t number = 0;
     while (awaitBell()) {

@@ -17,6 +17,7 @@ using std::chrono::milliseconds;
 
 constexpr int kPriority = 75;      // below the loop's
 constexpr double kFarthest = 1e3;  // [m] from its base
+constexpr auto kAlways = std::chrono::nanoseconds::max();
 
 std::int64_t now() noexcept {
     timespec t{};
@@ -36,7 +37,7 @@ bool isZero(const Wrench& F) { return F.force.isZero(0.0) && F.torque.isZero(0.0
 }  // namespace
 
 LinkedUnit::LinkedUnit(std::unique_ptr<Link> link, LinkedParams params)
-    : params_(std::move(params)), link_(std::move(link)) {
+    : params_(std::move(params)), link_(std::move(link)), beats_(params_.heartbeat, kAlways) {
     status_.state = DeviceState::Absent;
     thread_ = std::thread([this] { main(); });
 }
@@ -75,7 +76,7 @@ DeviceReading LinkedUnit::read() noexcept {
 void LinkedUnit::command(const Wrench& F_D_B) noexcept {
     last_commanded_ = passed(F_D_B, params_.description, isReady());
     status_.commanded = last_commanded_.force == F_D_B.force && last_commanded_.torque == F_D_B.torque;
-    commanded_.put({last_commanded_, now()});
+    commanded_.put({last_commanded_, now(), ++number_commanded_});
     command_came_.release();
 }
 
@@ -187,8 +188,10 @@ bool LinkedUnit::awaitCommand() {
 /// What may reach the unit now.
 Wrench LinkedUnit::wrenchNow() noexcept {
     const Commanded& newest = commanded_.latest();
-    const bool holds = isLent() && now() - newest.at <= in(params_.heartbeat);
-    return holds ? passed(newest.F_D_B, params_.description, isReady()) : Wrench{};
+    const double share = beats_.share({newest.number, newest.at, !isZero(newest.F_D_B), 0}, now());
+    if (!isLent()) return {};
+    const Wrench F = {share * newest.F_D_B.force, share * newest.F_D_B.torque};
+    return passed(F, params_.description, isReady());
 }
 
 /// Takes what was said, or tells what is wrong with it.

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/loop/mailbox.h"
+#include "devices/unit/heartbeat_watch.h"
 #include "devices/unit/link.h"
 #include "devices/unit/rate_handle.h"
 #include "devices/unit/unit.h"
@@ -28,7 +29,7 @@ struct LinkedParams {
 
 /// A unit behind a link, which has a thread of its own; the loop reads from a mailbox and commands into another, so
 /// that neither read() nor command() ever waits, whatever the link does. A wrench holds for a heartbeat and then counts
-/// as zero: a loop that hangs pushes nobody.
+/// as zero: a loop that hangs pushes nobody, and one that goes on gets its force back by a ramp.
 class LinkedUnit final : public Unit {
 public:
     static constexpr std::chrono::milliseconds kLastRetry{2000};
@@ -62,6 +63,7 @@ private:
     struct Commanded {  // from the loop to the thread
         Wrench F_D_B;
         Nanoseconds at = 0;
+        std::uint64_t number = 0;
     };
     /// What the thread remembers of what was said, to judge what comes.
     struct Judged {
@@ -98,11 +100,13 @@ private:
     // The loop's.
     loop::DeviceStatus status_;
     std::int64_t number_read_ = 0;
+    std::uint64_t number_commanded_ = 0;
     RateHandle handle_;
     Wrench last_commanded_;
 
     // The thread's.
     Judged judged_;
+    HeartbeatWatch beats_;
 
     // Of the thread and of whoever looks after the unit.
     mutable std::mutex mutex_;

@@ -141,6 +141,27 @@ TEST(LinkedUnit, ALoopThatHangsPushesNobody) {
     EXPECT_EQ(bench.unit->state(), DeviceState::Ready) << "nothing is wrong with the device";
 }
 
+TEST(LinkedUnit, ALoopThatGoesOnGetsItsForceBackByARamp) {
+    // Truth: invariant: no step, however long it hung.
+    Bench bench;
+    bench.push();
+    const std::size_t then = bench.script.count();
+    ASSERT_TRUE(reached([&] { return bench.script.count() > then + 5; }));
+    const std::size_t back = bench.script.count();
+    ASSERT_TRUE(reached([&] {
+        bench.tick();
+        const std::lock_guard lock(bench.script.mutex);
+        return bench.script.got.back().force == kPush.force;
+    }));
+    const std::lock_guard lock(bench.script.mutex);
+    int between = 0;
+    for (std::size_t i = back; i < bench.script.got.size(); ++i) {
+        const double felt = bench.script.got[i].force.x();
+        between += felt > 0.0 && felt < kPush.force.x() ? 1 : 0;
+    }
+    EXPECT_GT(between, 0);
+}
+
 struct FaultCase {
     const char* name;
     DeviceState state;

@@ -1,8 +1,8 @@
-#include "devices/host/heartbeat_watch.h"
+#include "devices/unit/heartbeat_watch.h"
 
 #include <gtest/gtest.h>
 
-namespace passung::host {
+namespace passung::unit {
 namespace {
 
 using Nanoseconds = HeartbeatWatch::Nanoseconds;
@@ -10,7 +10,7 @@ constexpr Nanoseconds kMs = 1'000'000;
 
 /// A study that commands and a host that looks, each at its time.
 struct Bench {
-    HeartbeatWatch watch{std::chrono::milliseconds(5)};
+    HeartbeatWatch watch{std::chrono::milliseconds(5), std::chrono::milliseconds(50)};
     HeartbeatWatch::Beat beat;
 
     double command(Nanoseconds at, bool pushes = true) {
@@ -85,4 +85,4 @@ TEST(HeartbeatWatch, AMissingZeroIsNoGap) {
 }
 
 }  // namespace
-}  // namespace passung::host
+}  // namespace passung::unit
