@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <time.h>
+#include <unistd.h>
 
 #include <cstdio>
 
@@ -19,6 +20,8 @@ using unit::Exchange;
 
 constexpr int kPriority = 74;                       // below the unit's thread in the study
 constexpr std::chrono::milliseconds kRecovers{50};  // a study without a heartbeat
+// A library that hangs for so long [s] ends this program, also where no study is there any more to do it.
+constexpr unsigned kOpens = 10, kHangs = 2;
 
 std::int64_t now() noexcept {
     timespec t{};
@@ -104,6 +107,7 @@ void serve(unit::Link& link, const DeviceDescription& limits, const Pages& pages
     StudyCommand command;
     std::uint64_t number = 0;
     while (awaitBell()) {
+        alarm(kHangs);
         if (const auto newest = pages.study->now.load()) command = *newest;
         Wrench F = wrenchOf(command);
         const bool pushes = !F.force.isZero(0.0) || !F.torque.isZero(0.0);
@@ -130,6 +134,7 @@ int serveLibrary(const HostedLibrary& library) {
     sched_param priority{};
     priority.sched_priority = kPriority;
     sched_setscheduler(0, SCHED_FIFO, &priority);  // goes on without it, like the loop
+    alarm(kOpens);
     const HostTask& task = pages.study->task;
     const std::string file(task.library.view());
     if (task.looks_only != 0) {

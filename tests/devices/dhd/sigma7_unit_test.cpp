@@ -10,6 +10,7 @@
 #include <random>
 
 #include "devices/backends/backends.h"
+#include "devices/host/hosted_unit.h"
 #include "tests/devices/dhd/host_processes.h"
 #include "tests/devices/fakes/calls_until_zero.h"
 #include "tests/devices/fakes/dhd_block.h"
@@ -72,10 +73,11 @@ public:
             return device().commands.last().felt[1] == 2.0;  // the vendor's y is our x
         });
     }
-    int losses() {
-        int count = 0;
-        for (const unit::UnitNews& news : unit->takeNews()) count += news.isLoss() ? 1 : 0;
-        return count;
+    std::vector<std::string> losses() {
+        std::vector<std::string> all;
+        for (const unit::UnitNews& news : unit->takeNews())
+            if (news.isLoss()) all.push_back(news.why);
+        return all;
     }
 
     std::unique_ptr<unit::Unit> unit;
@@ -130,6 +132,7 @@ TEST(Sigma7Unit, TwoOfThemAreServedByTwoHosts) {
 struct DeviceFault {
     const char* name;
     DeviceState state;
+    const char* why;
     std::function<void(Study&)> happens, ends;
     bool reaches = true;  // zero can be commanded; else the device's watchdog has to end the force
 };
@@ -178,41 +181,51 @@ TEST_P(Sigma7Fault, TakesTheForceIsToldOnceAndComesBackWhenItIsArmed) {
         return study.unit->state() == DeviceState::Ready;
     })) << study.unit->trouble();
     EXPECT_TRUE(study.pushes());
-    EXPECT_EQ(study.losses(), 1);
+    const auto losses = study.losses();
+    ASSERT_EQ(losses.size(), 1u);
+    EXPECT_NE(losses.front().find(fault.why), std::string::npos) << losses.front();
 }
 
-DeviceFault goingWrong(const char* name, DeviceState state, DhdFault fault, bool reaches = true) {
-    return {name, state, [fault](Study& s) { s.device().fault = fault; },
-            [](Study& s) { s.device().fault = DhdFault::None; }, reaches};
+DeviceFault goingWrong(const char* name, DeviceState state, const char* why, DhdFault fault, bool reaches = true) {
+    return {name,
+            state,
+            why,
+            [fault](Study& s) { s.device().fault = fault; },
+            [](Study& s) { s.device().fault = DhdFault::None; },
+            reaches};
 }
 
-DeviceFault hostSignal(const char* name, DeviceState state, int signal) {
-    return {name, state,
+DeviceFault hostSignal(const char* name, DeviceState state, const char* why, int signal) {
+    return {name,
+            state,
+            why,
             [signal](Study&) {
                 for (const pid_t host : test::hostsOf(getpid())) kill(host, signal);
             },
-            [](Study&) {}, false};
+            [](Study&) {},
+            false};
 }
 
-INSTANTIATE_TEST_SUITE_P(Faults, Sigma7Fault,
-                         testing::Values(goingWrong("Unplugged", DeviceState::Lost, DhdFault::Unplugged, false),
-                                         goingWrong("MinusOne", DeviceState::Lost, DhdFault::Timeout, false),
-                                         goingWrong("NotANumber", DeviceState::Fault, DhdFault::NotANumber),
-                                         goingWrong("Frozen", DeviceState::Fault, DhdFault::Frozen),
-                                         goingWrong("LibraryHangs", DeviceState::Stale, DhdFault::Hang, false),
-                                         goingWrong("LibraryCrashes", DeviceState::Lost, DhdFault::Crash, false),
-                                         hostSignal("HostKilled", DeviceState::Lost, SIGKILL),
-                                         hostSignal("HostStopped", DeviceState::Stale, SIGSTOP),
-                                         DeviceFault{"Jump", DeviceState::Fault,
-                                                     [](Study& s) {
-                                                         fake::DhdHand far;
-                                                         far.position[2] = 0.9;
-                                                         s.device().hand.store(far);
-                                                     },
-                                                     [](Study&) {}},
-                                         DeviceFault{"MotorsOff", DeviceState::Fault,
-                                                     [](Study& s) { s.device().brakes = true; }, [](Study&) {}}),
-                         [](const auto& one) { return one.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Faults, Sigma7Fault,
+    testing::Values(goingWrong("Unplugged", DeviceState::Lost, "communication error", DhdFault::Unplugged, false),
+                    goingWrong("MinusOne", DeviceState::Lost, "timeout", DhdFault::Timeout, false),
+                    goingWrong("NotANumber", DeviceState::Fault, "no finite number", DhdFault::NotANumber),
+                    goingWrong("Frozen", DeviceState::Fault, "stand still", DhdFault::Frozen),
+                    goingWrong("LibraryHangs", DeviceState::Stale, "for 50 ms", DhdFault::Hang, false),
+                    goingWrong("LibraryCrashes", DeviceState::Lost, "signal 11", DhdFault::Crash, false),
+                    hostSignal("HostKilled", DeviceState::Lost, "signal 9", SIGKILL),
+                    hostSignal("HostStopped", DeviceState::Stale, "for 50 ms", SIGSTOP),
+                    DeviceFault{"Jump", DeviceState::Fault, "jumped",
+                                [](Study& s) {
+                                    fake::DhdHand far;
+                                    far.position[2] = 0.9;
+                                    s.device().hand.store(far);
+                                },
+                                [](Study&) {}},
+                    DeviceFault{"MotorsOff", DeviceState::Fault, "motors off",
+                                [](Study& s) { s.device().brakes = true; }, [](Study&) {}}),
+    [](const auto& one) { return one.param.name; });
 
 TEST(Sigma7Unit, WhateverIsReadAndAskedTheWrenchStaysWithinLimitsAndIsZeroUnlessReady) {
     // Truth: invariant, by the shim's own account of every call. PASSUNG_LONG=1: a million ticks.
@@ -256,8 +269,10 @@ TEST(Sigma7Unit, WhateverIsReadAndAskedTheWrenchStaysWithinLimitsAndIsZeroUnless
         study.unit->read();
         study.unit->command(F);
         for (int k = 0; k < 200 && study.device().commands.count() == before; ++k) poll(nullptr, 0, k < 100 ? 0 : 1);
-        const bool armed = study.unit->state() == DeviceState::Ready;
-        not_ready = ready || armed ? 0 : not_ready + 1;
+        bool was_ready = ready || study.unit->state() == DeviceState::Ready;
+        for (const unit::UnitNews& news : study.unit->takeNews())
+            was_ready = was_ready || news.state == DeviceState::Ready;
+        not_ready = was_ready ? 0 : not_ready + 1;
         for (const auto count = study.device().commands.count(); seen < count; ++seen) {
             const fake::DhdCommand command = study.device().commands.row(seen);
             const Vec3 force(command.asked[0], command.asked[1], command.asked[2]);
@@ -324,6 +339,7 @@ public:
         waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WSTOPPED | WNOWAIT);
     }
     void resume() const { kill(child_, SIGCONT); }
+    pid_t id() const { return child_; }
 
 private:
     pid_t child_;
@@ -431,6 +447,59 @@ TEST(StudyThatEnds, HungInItsLoopItLeavesNoForce) {
         ASSERT_TRUE(reached([&] { return stops.watched->hung.load(); }));
         stops.expectZeroSoon(stops.device().commands.count(), since);
     }
+}
+
+TEST(StudyThatEnds, KilledWhileTheLibraryHangsItLeavesNoHost) {
+    // Truth: invariant: whoever holds the device of a library that hangs ends by itself.
+    Stops stops;
+    pid_t host = 0;
+    {
+        const StudyProcess study;
+        ASSERT_TRUE(stops.pushesFully());
+        const auto hosts = test::hostsOf(study.id());
+        ASSERT_EQ(hosts.size(), 1u);
+        host = hosts.front();
+        stops.device().fault = DhdFault::Hang;
+        const auto readings = stops.device().readings.load();
+        poll(nullptr, 0, 20);
+        EXPECT_LE(stops.device().readings, readings + 1) << "it hangs";
+    }
+    EXPECT_TRUE(reached([&] { return !test::runs(host); }));
+}
+
+TEST(HostedLink, TellsOfAGapAndTakesTheForceBeyondUntilItIsKnown) {
+    // Truth: the shim's own account. A starved machine makes other gaps than those that are made here: each is tried
+    // until it comes.
+    SharedBlock<DhdBlock> block(fake::kDhdVariable);
+    setenv("PASSUNG_DEVICE_HOST", PASSUNG_DEVICE_HOST_FILE, 1);
+    HostedLink link({.backend = "dhd", .address = PASSUNG_DHD_SHIM_FILE}, {});
+    ASSERT_TRUE(link.open());
+    const auto felt = [&] { return block->devices[0].commands.last().felt[1]; };
+    unit::Exchange said;
+    const auto exchange = [&](const Wrench& F) { return said = link.exchange(F, std::chrono::milliseconds(100)); };
+    const auto afterSilence = [&](int milliseconds, unit::Exchange::Kind kind, const char* why) {
+        exchange({});
+        exchange(kPush);
+        poll(nullptr, 0, milliseconds);
+        exchange(kPush);
+        return said.kind == kind && said.why.find(why) != std::string::npos;
+    };
+    EXPECT_TRUE(reached([&] { return afterSilence(20, unit::Exchange::Kind::News, "ramped back"); })) << said.why;
+    EXPECT_LT(felt(), 1.0);
+    EXPECT_TRUE(reached([&] { return exchange(kPush), felt() == 2.0; }));
+    EXPECT_TRUE(reached([&] { return afterSilence(100, unit::Exchange::Kind::Stale, "taken away"); })) << said.why;
+    for (int i = 0; i < 5; ++i) {
+        exchange(kPush);
+        EXPECT_EQ(felt(), 0.0);
+    }
+    EXPECT_TRUE(reached([&] { return exchange({}), exchange(kPush), felt() > 0.0; }));
+}
+
+TEST(HostProgram, ThatEndsAtOnceIsNoDevice) {
+    // Truth: invariant.
+    setenv("PASSUNG_DEVICE_HOST", "/bin/true", 1);
+    EXPECT_NE(backends::find("dhd")->look({}).why_not.find("the device host has ended while it loaded"),
+              std::string::npos);
 }
 
 TEST(HostProgram, IsMissedInWordsAndStartedByNobodyElse) {
