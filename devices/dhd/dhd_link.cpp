@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <optional>
 
 namespace passung::dhd {
 namespace {
@@ -22,6 +23,12 @@ std::string versionsText(const DhdLibrary& dhd, char id) {
     if (dhd.getVersion != nullptr && dhd.getVersion(&firmware, id) >= 0)
         text += fmt::format(", firmware {:.2f}", firmware);
     return text;
+}
+
+/// Other models have other limits, and nothing of theirs is known here.
+Error notServed(const DeviceUnit& unit) {
+    return {.message = fmt::format("the device {} is no {} but {}, of whose limits nothing is known: it is not served",
+                                   unit.serial, kModel, unit.model)};
 }
 
 /// Who the opened device is.
@@ -48,13 +55,19 @@ Result<std::vector<DeviceUnit>> look(const std::string& library) {
     if (!dhd) return dhd.errors();
     const int count = (*dhd)->getDeviceCount();
     std::vector<DeviceUnit> units;
+    std::optional<Error> other;
     for (int id = 0; id < count; ++id) {
         const auto place = static_cast<char>(id);
         if ((*dhd)->openId(place) < 0) continue;
-        units.push_back(unitOf(**dhd, place));
+        DeviceUnit unit = unitOf(**dhd, place);
         (*dhd)->close(place);
+        if (unit.model == kModel)
+            units.push_back(std::move(unit));
+        else
+            other = notServed(unit);
     }
     if (!units.empty()) return units;
+    if (other) return *other;
     if (count <= 0) return nothingThere();
     return Error{.message =
                      fmt::format("Force Dimension's library sees {} and opens none: {}; does another program use "
@@ -85,10 +98,7 @@ Result<DeviceUnit> DhdLink::open() {
     dhd_ = *std::move(loaded);
     if (const auto opened = openChosen(); !opened) return opened.errors();
     DeviceUnit unit = unitOf(*dhd_, id());
-    if (unit.model != kModel)
-        return Error{.message = fmt::format("the device {} is an {}: only {} is served, of whose limits something is "
-                                            "known",
-                                            unit.serial, unit.model, kModel)};
+    if (unit.model != kModel) return notServed(unit);
     if (const auto prepared = prepare(); !prepared) return prepared.errors();
     unit.calibration = fmt::format("axes {}; watchdog {} ms", axes_.text(), kWatchdog);
     return unit;

@@ -44,7 +44,7 @@ private:
     bool has_grip_ = false;
 };
 
-/// The units that the library sees and that nobody else has opened.
+/// The sigma.7s that the library sees and that nobody else has opened.
 Result<std::vector<DeviceUnit>> look(const std::string& library);
 
 }  // namespace passung::dhd

@@ -185,7 +185,7 @@ TEST(DhdLink, SaysWhatIsMissingAndWhatToDo) {
     has(refusal({}, [](DhdBlock& block) { block.version[0] = 2; }), {"is of version 2.17, and not 3"});
     has(refusal({}, [](DhdBlock& block) { block.present = 0; }), {"sees no device", "lsusb -d 1451:", "udev"});
     has(refusal({}, [](DhdBlock& block) { block.devices[0].plugged = false; }), {"dhdOpenID", "no device found"});
-    has(refusal({}, [](DhdBlock& block) { block.devices[0].type = 34; }), {"4711 is an omega.6", "only sigma.7"});
+    has(refusal({}, [](DhdBlock& block) { block.devices[0].type = 34; }), {"4711 is no sigma.7 but omega.6"});
 
     const Shim shim;
     setenv(DhdLibrary::kFileVariable, "/elsewhere/libdhd.so", 1);
@@ -228,6 +228,8 @@ INSTANTIATE_TEST_SUITE_P(
     Readings, DhdSays,
     testing::Values(
         Saying{"MinusOne", Kind::Gone, "communication error", [](DhdBlock& b) { b.devices[0].plugged = false; }},
+        Saying{"SetReturnsMinusOne", Kind::Gone, "dhdSetForceAndTorqueAndGripperForce",
+               [](DhdBlock& b) { b.call_result = -1; }},
         Saying{"Timeout", Kind::Gone, "timeout", [](DhdBlock& b) { b.devices[0].fault = fake::DhdFault::Timeout; }},
         Saying{"NotANumber", Kind::Wrong, "no finite number",
                [](DhdBlock& b) { b.devices[0].fault = fake::DhdFault::NotANumber; }},
@@ -253,6 +255,11 @@ TEST(DhdLink, LookListsAllUnitsAndLeavesThemClosed) {
     ASSERT_EQ(units->size(), 2u);
     EXPECT_EQ(units->front().serial + units->back().serial, "47114712");
     EXPECT_FALSE(shim.device(0).opened || shim.device(1).opened);
+    shim.device(0).type = 34;
+    EXPECT_EQ(look(PASSUNG_DHD_SHIM_FILE)->size(), 1u) << "what cannot be used is none";
+    shim.device(1).type = 63;
+    EXPECT_NE(look(PASSUNG_DHD_SHIM_FILE).errors().front().message.find("4712 is no sigma.7 but delta.3"),
+              std::string::npos);
     shim.device(0).plugged = shim.device(1).plugged = false;
     EXPECT_NE(look(PASSUNG_DHD_SHIM_FILE).errors().front().message.find("opens none"), std::string::npos);
 }

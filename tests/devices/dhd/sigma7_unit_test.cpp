@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sched.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -268,7 +269,8 @@ TEST(Sigma7Unit, WhateverIsReadAndAskedTheWrenchStaysWithinLimitsAndIsZeroUnless
         const auto before = study.device().commands.count();
         study.unit->read();
         study.unit->command(F);
-        for (int k = 0; k < 200 && study.device().commands.count() == before; ++k) poll(nullptr, 0, k < 100 ? 0 : 1);
+        for (int k = 0; k < 3000 && study.device().commands.count() == before; ++k)
+            k < 2000 ? static_cast<void>(sched_yield()) : static_cast<void>(poll(nullptr, 0, 1));
         bool was_ready = ready || study.unit->state() == DeviceState::Ready;
         for (const unit::UnitNews& news : study.unit->takeNews())
             was_ready = was_ready || news.state == DeviceState::Ready;
@@ -493,6 +495,27 @@ TEST(HostedLink, TellsOfAGapAndTakesTheForceBeyondUntilItIsKnown) {
         EXPECT_EQ(felt(), 0.0);
     }
     EXPECT_TRUE(reached([&] { return exchange({}), exchange(kPush), felt() > 0.0; }));
+}
+
+TEST(HostedLink, IsLimitedInTheHostWhateverTheStudySends) {
+    // Truth: the shim's own account: what it was asked for.
+    SharedBlock<DhdBlock> block(fake::kDhdVariable);
+    setenv("PASSUNG_DEVICE_HOST", PASSUNG_DEVICE_HOST_FILE, 1);
+    HostedLink link({.backend = "dhd", .address = PASSUNG_DHD_SHIM_FILE}, {});
+    ASSERT_TRUE(link.open());
+    const auto asked = [&](const Wrench& F) {
+        link.exchange(F, std::chrono::milliseconds(1000));
+        const fake::DhdCommand last = block->devices[0].commands.last();
+        return std::pair(Vec3(last.asked[0], last.asked[1], last.asked[2]).norm(),
+                         Vec3(last.asked[3], last.asked[4], last.asked[5]).norm());
+    };
+    // A machine that is late sees the zero that follows.
+    EXPECT_TRUE(reached([&] { return std::abs(asked({Vec3(100, 0, 0), Vec3::Zero()}).first - 12.0) < 1e-9; }));
+    EXPECT_TRUE(reached([&] { return std::abs(asked({Vec3::Zero(), Vec3(0, 0, 7)}).second - 0.2) < 1e-9; }));
+    EXPECT_EQ(asked({Vec3(std::numeric_limits<double>::quiet_NaN(), 1, 1), Vec3::Zero()}), std::pair(0.0, 0.0));
+    EXPECT_EQ(block->devices[0].non_finite, 0);
+    for (auto row = std::int64_t{0}; row < block->devices[0].commands.count(); ++row)
+        EXPECT_LE(std::abs(block->devices[0].commands.row(row).asked[1]), 12.0);
 }
 
 TEST(HostProgram, ThatEndsAtOnceIsNoDevice) {
