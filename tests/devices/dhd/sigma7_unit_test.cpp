@@ -518,6 +518,28 @@ TEST(HostedLink, IsLimitedInTheHostWhateverTheStudySends) {
         EXPECT_LE(std::abs(block->devices[0].commands.row(row).asked[1]), 12.0);
 }
 
+TEST(HostedLink, GivesNoForceAfterAFaultThoughTheStudyOverlooksIt) {
+    // Truth: the shim's own account.
+    SharedBlock<DhdBlock> block(fake::kDhdVariable);
+    setenv("PASSUNG_DEVICE_HOST", PASSUNG_DEVICE_HOST_FILE, 1);
+    HostedLink link({.backend = "dhd", .address = PASSUNG_DHD_SHIM_FILE}, {});
+    ASSERT_TRUE(link.open());
+    fake::DhdDevice& device = block->devices[0];
+    const auto push = [&] {
+        const auto said = link.exchange(kPush, std::chrono::milliseconds(1000));
+        return std::pair(said.kind, device.commands.last().felt[1]);
+    };
+    ASSERT_TRUE(reached([&] { return push().second == 2.0; }));
+    device.fault = DhdFault::NotANumber;
+    EXPECT_TRUE(reached([&] { return push().first == unit::Exchange::Kind::Wrong; }));
+    device.fault = DhdFault::None;
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(push().second, 0.0);
+    EXPECT_TRUE(reached([&] {
+        link.exchange({}, std::chrono::milliseconds(1000));
+        return push().second > 0.0;
+    }));
+}
+
 TEST(HostProgram, ThatEndsAtOnceIsNoDevice) {
     // Truth: invariant.
     setenv("PASSUNG_DEVICE_HOST", "/bin/true", 1);
