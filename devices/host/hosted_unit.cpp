@@ -64,7 +64,9 @@ Result<DeviceUnit> HostedLink::open() {
     if (const auto running = process_->awaitRunning(kOpening); !running) return running.errors();
     commands_ = reports_ = withheld_ = gaps_ = 0;
     heard_at_ = std::chrono::steady_clock::now();
-    return unitOf(process_->told().units.front(), choice_);
+    DeviceUnit unit = unitOf(process_->told().units.front(), choice_);
+    unit.calibration += "; heartbeat " + std::to_string(choice_.heartbeat_ms) + " ms";
+    return unit;
 }
 
 Exchange HostedLink::exchange(const Wrench& F_D_B, milliseconds longest) {

@@ -103,6 +103,7 @@ TEST(Sigma7Unit, PushesWithTheWrenchThatIsCommandedAndNotAfterwards) {
         const DeviceUnit who = study.unit->identity().value();
         EXPECT_EQ(who.backend + " " + who.kind + " " + who.serial, "dhd sigma7 4711");
         EXPECT_EQ(who.versions, "SDK 3.17.6.0, firmware 2.00");
+        EXPECT_EQ(who.calibration, "axes y -x z; watchdog 20 ms; heartbeat 5 ms");
         EXPECT_EQ(test::hostsOf(getpid()).size(), 1u);
         study.unit->giveBack();
         const auto from = study.device().commands.count();
