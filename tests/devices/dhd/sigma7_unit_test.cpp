@@ -55,7 +55,7 @@ public:
     DeviceReading tick(const Wrench& F = kPush) {
         tremble();
         const std::int64_t before = device().commands.count();
-        const DeviceReading reading = unit->read();
+        DeviceReading reading = unit->read();
         unit->command(F);
         for (int i = 0; i < 200 && device().commands.count() == before; ++i) poll(nullptr, 0, i < 100 ? 0 : 1);
         return reading;
