@@ -309,8 +309,11 @@ private:
         auto* protocol = sub->add_option("PROTOCOL", power_.protocol, "study file (.toml)");
         auto* effect = sub->add_option(
             "--effect", power_.effect,
-            "effect FACTOR:LEVEL=DELTA, planted in every virtual study at one level of a factor. DELTA is +0.3 or -0.3 "
-            "(added, in the measure's unit) or x1.2 (multiplied); +0 gives the rate of false positives");
+            "effect FACTOR:LEVEL=DELTA~SPREAD, planted in every virtual study at one level of a factor. DELTA is +0.3 "
+            "or "
+            "-0.3 (added, in the measure's unit) or x1.2 (multiplied); +0 gives the rate of false positives. ~SPREAD: "
+            "standard deviation of the effect between persons, of the logarithm where it is multiplied; without it "
+            "everybody has the same effect, and the power is too high");
         sub->add_option("--against", power_.against, "level to compare with; default: the factor's first other one");
         sub->add_option("--measure", power_.measure, "measure of a trial; default time_s");
         sub->add_option("--test", power_.test,
