@@ -182,7 +182,7 @@ void Anonymiser::listSmallCells(const Table& table, const Persons& persons) {
             if (count < how_.least_persons)
                 note({table.file, "value",
                       fmt::format("answer of fewer than {} persons: kept, look at it", how_.least_persons),
-                      item + '=' + answer, count});
+                      fmt::format("{}={}", item, answer), count});
         }
     }
 }
