@@ -37,7 +37,7 @@ struct ColumnOf {
     /// What a view of the database has too.
     ColumnOf(const store::ViewColumn& column, std::string_view type, Getter<Row> get, const ColumnLevels& levels = {})
         : ColumnOf(column.name, column.label, type, std::move(get),
-                   {column.unit, levels, column.formula, column.formula_version}) {}
+                   {column.unit, levels, column.formula, column.formula_version, column.typed}) {}
     ColumnOf(Column column, Getter<Row> get) : description(std::move(column)), text(std::move(get)) {}
 
     Column description;

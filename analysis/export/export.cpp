@@ -196,15 +196,23 @@ Result<ExportReport> exportAll(const store::StoreReader& reader, const std::stri
     Writer writer(*folder);
     std::vector<Table> tables;  // without their rows
     std::set<std::string> names_taken;
+    std::optional<Anonymiser> anonymiser;
+    if (options.anonymity) anonymiser.emplace(*options.anonymity);
     const auto write = [&](Table table) {
         if (options.psych_ds) table.file = psychDsFile(*study, table, names_taken);
         markMissing(table);
+        if (anonymiser) anonymiser->apply(table);
         writer.write(table.file, toCsv(table));
         table.rows = {};
         tables.push_back(std::move(table));
     };
     forEachTable(*study, write);
     if (!reader.damages().empty()) write(makeMissing(reader.damages()));
+    if (anonymiser) {
+        if (const auto unused = anonymiser->unusedBands(); !unused.empty())
+            return Error{.message = "is no item that somebody was asked", .key = "--band", .value = unused.front()};
+        write(anonymiser->account());
+    }
     if (options.psych_ds) writer.write("dataset_description.json", psychDsDescription(*study, tables));
     if (options.samples) {
         tables.push_back({kSamplesPattern,

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "analysis/export/anonymity.h"
 #include "analysis/export/study_data.h"
 #include "analysis/export/table.h"
 #include "core/base/result.h"
@@ -24,7 +26,8 @@ struct ExportedFile {
 struct ExportOptions {
     bool samples = true;    // every recorded tick: some 100 kB per second of a trial
     bool psych_ds = false;  // tables in data/ under names of Psych-DS, with its dataset_description.json
-    bool group = false;     // let the group of this user read and write the files too, not this user alone
+    std::optional<Anonymity> anonymity = {};  // for others than the lab; none: everything as it is
+    bool group = false;  // let the group of this user read and write the files too, not this user alone
     /// Called now and then with the share that is done, 0 … 1.
     std::function<void(double)> progress;
     /// Asked as often: true ends the export, which then leaves nothing; empty: never.

@@ -59,7 +59,7 @@ ColumnsOf<store::ItemResponseRow> itemColumns() {
     return {{"item", "Its id in the questionnaire's file", "text", &ItemResponseRow::item},
             {"presented_index", "Its place as shown, from 0", "integer", &ItemResponseRow::presented_index},
             {"value", "The answer as given, before any reversal", "number", &ItemResponseRow::value_num},
-            {"value_text", "The answer, where it is a text", "text", &ItemResponseRow::value_text},
+            {"value_text", "The answer, where it is a text", "text", &ItemResponseRow::value_text, {.typed = true}},
             {"skipped", "1 if it was left out", "0/1", &ItemResponseRow::skipped, {.levels = {"0", "1"}}},
             {"response_time_ms",
              "From showing the item to its last answer; NA where not measured, so always in virtual time",

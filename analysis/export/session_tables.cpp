@@ -79,7 +79,7 @@ ColumnsOf<SessionRow> sessionColumns(const StudyData& study, const std::set<std:
              }},
             {"device_serials", "Serial numbers of these devices likewise, as they say them", "text",
              [](const SessionRow& session) { return listCell(session.device_serials); }},
-            {"experimenter", "Who led the session", "text", &SessionRow::experimenter},
+            {"experimenter", "Who led the session", "text", &SessionRow::experimenter, {.typed = true}},
             {"language", "Language of the texts", "text", &SessionRow::language},
             {"seed", "Seed of everything random in the session", "integer",
              [](const SessionRow& session) { return std::to_string(session.seed); }},
@@ -121,7 +121,7 @@ ColumnsOf<ParticipantRow> participantTableColumns(const StudyData& study) {
           "text",
           &ParticipantRow::status,
           {.levels = {"enrolled", "active", "complete", "excluded", "withdrawn"}}},
-         {"status_reason", "Why", "text", &ParticipantRow::status_reason},
+         {"status_reason", "Why", "text", &ParticipantRow::status_reason, {.typed = true}},
          {"group",
           "Group of the between-subjects factors; all if there is none; NA: there is no slot yet, or it was given "
           "back",

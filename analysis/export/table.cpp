@@ -31,9 +31,14 @@ void appendLine(std::string& text, const Fields& fields, Text text_of) {
 ColumnLevels::ColumnLevels(std::initializer_list<std::string_view> texts) : names(texts.begin(), texts.end()) {}
 
 Column describe(std::string_view name, std::string_view label, std::string_view type, const ColumnDetails& details) {
-    return {std::string(name),   std::string(label),           std::string(details.unit),
-            std::string(type),   std::string(details.formula), details.formula_version,
-            details.levels.names};
+    return {std::string(name),
+            std::string(label),
+            std::string(details.unit),
+            std::string(type),
+            std::string(details.formula),
+            details.formula_version,
+            details.levels.names,
+            details.typed};
 }
 
 std::string cell(std::int64_t value) { return std::to_string(value); }

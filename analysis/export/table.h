@@ -22,6 +22,7 @@ struct Column {
     std::string formula;  // empty: as recorded
     std::int64_t formula_version = 1;
     std::vector<std::string> levels;  // empty: not a fixed set
+    bool typed = false;               // texts that somebody typed: they may name a person
 };
 
 /// The values that a column takes. Made from texts outside of the lists of columns, which compile at length otherwise.
@@ -39,6 +40,7 @@ struct ColumnDetails {
     ColumnLevels levels = {};
     std::string_view formula = {};
     std::int64_t formula_version = 1;
+    bool typed = false;
 };
 
 Column describe(std::string_view name, std::string_view label, std::string_view type, const ColumnDetails& details);

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <string_view>
+#include <utility>
+
+#include "core/base/random.h"
 
 namespace passung::power {
 namespace {
@@ -33,7 +37,7 @@ bool hasLevel(const plan::Factor& factor, const std::string& label) {
 }
 
 /// Sets scale or shift.
-bool readDelta(std::string_view text, PlantedEffect& effect) {
+bool readMiddle(std::string_view text, PlantedEffect& effect) {
     if (text.starts_with('x')) {
         const auto scale = numberIn(text.substr(1));
         effect.scale = scale.value_or(0.0);
@@ -42,6 +46,21 @@ bool readDelta(std::string_view text, PlantedEffect& effect) {
     const auto shift = numberIn(text);
     effect.shift = shift.value_or(0.0);
     return shift && (text.starts_with('+') || text.starts_with('-'));
+}
+
+std::string_view deltaOf(std::string_view text) { return text.substr(text.rfind('=') + 1); }
+
+/// DELTA, and of "DELTA~SPREAD" what stands behind the mark.
+std::pair<std::string_view, std::optional<std::string_view>> parted(std::string_view delta) {
+    const std::size_t mark = delta.find('~');
+    if (mark == std::string_view::npos) return {delta, std::nullopt};
+    return {delta.substr(0, mark), delta.substr(mark + 1)};
+}
+
+bool readSpread(std::string_view text, PlantedEffect& effect) {
+    const auto spread = numberIn(text);
+    effect.spread = spread.value_or(0.0);
+    return spread && *spread >= 0.0;
 }
 
 }  // namespace
@@ -55,8 +74,11 @@ Result<PlantedEffect> readEffect(const std::string& text, const std::string& aga
     effect.factor = text.substr(0, colon);
     effect.level = text.substr(colon + 1, equals - colon - 1);
     effect.measure = measure;
-    if (!readDelta(std::string_view(text).substr(equals + 1), effect))
+    const auto [middle, spread] = parted(deltaOf(text));
+    if (!readMiddle(middle, effect))
         return wrong("--effect", text, "DELTA must be +NUMBER or -NUMBER, added, or xNUMBER > 0, multiplied");
+    if (spread && !readSpread(*spread, effect))
+        return wrong("--effect", text, "SPREAD behind ~ must be a number of at least 0");
     const auto factor = std::find_if(plan.factors.begin(), plan.factors.end(),
                                      [&](const plan::Factor& f) { return f.name == effect.factor; });
     if (factor == plan.factors.end())
@@ -78,15 +100,27 @@ Result<PlantedEffect> readEffect(const std::string& text, const std::string& aga
 }
 
 std::optional<double> addedBy(const std::string& text) {
-    const std::string delta = text.substr(text.rfind('=') + 1);
-    return delta.starts_with('x') ? std::nullopt : numberIn(delta);
+    const std::string_view middle = parted(deltaOf(text)).first;
+    return middle.starts_with('x') ? std::nullopt : numberIn(middle);
 }
 
-void plant(const PlantedEffect& effect, exporter::StudyData& study) {
+bool saysSpread(const std::string& text) { return parted(deltaOf(text)).second.has_value(); }
+
+void plant(const PlantedEffect& effect, std::uint64_t seed, exporter::StudyData& study) {
+    const bool multiplied = effect.scale != 1.0;
+    std::map<std::string, double> deviations;  // from everybody's effect, by person
+    const auto deviationOf = [&](const std::string& code) {
+        const auto [found, is_new] = deviations.try_emplace(code, 0.0);
+        if (is_new) found->second = effect.spread * Random(streamSeed("", code, "power", "effect", seed)).normal();
+        return found->second;
+    };
     for (store::AttemptRow& attempt : study.attempts) {
         if (exporter::levelOf(attempt.levels, effect.factor) != effect.level) continue;
-        if (const auto found = attempt.measures.find(effect.measure); found != attempt.measures.end())
-            found->second = effect.scale * found->second + effect.shift;
+        const auto found = attempt.measures.find(effect.measure);
+        if (found == attempt.measures.end()) continue;
+        const double own = deviationOf(attempt.participant_id);
+        found->second =
+            effect.scale * (multiplied ? std::exp(own) : 1.0) * found->second + effect.shift + (multiplied ? 0.0 : own);
     }
 }
 

@@ -45,7 +45,7 @@ Result<PowerResult> runShard(const PowerJob& job, const Shard& shard, const Plan
             own.seed = runSeed(plan, result.tests[i].run);
             auto study = perform(own, job.participants);
             if (study) {
-                plant(effect, *study);
+                plant(effect, own.seed, *study);
                 result.tests[i].test = testEffect(effect, job.test, plan, *study);
             }
             const std::lock_guard lock(mutex);

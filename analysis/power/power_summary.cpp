@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -58,6 +59,19 @@ PowerSummary summarise(const PowerResult& result) {
     return summary;
 }
 
+namespace {
+
+/// How many persons the tests had; less than planned where values are missing.
+std::string testedText(const PowerResult& result) {
+    const auto [least, most] =
+        std::minmax_element(result.tests.begin(), result.tests.end(),
+                            [](const StudyTest& a, const StudyTest& b) { return a.test.n < b.test.n; });
+    if (least->test.n == most->test.n) return fmt::format("tested: {} persons in each study\n", most->test.n);
+    return fmt::format("tested: {} to {} persons\n", least->test.n, most->test.n);
+}
+
+}  // namespace
+
 std::string summaryText(const PowerResult& result) {
     const PowerJob& job = result.job;
     const PowerSummary s = summarise(result);
@@ -69,6 +83,10 @@ std::string summaryText(const PowerResult& result) {
                             job.repeats);
     text += fmt::format("planted in {}: {}, compared with {} by {} on means of cells\n", job.measure, job.effect,
                         job.against, job.test);
+    text += testedText(result);
+    if (addedBy(job.effect) != 0.0 && !saysSpread(job.effect))
+        text +=
+            "the effect is the same for everybody: where persons differ in it the power is lower; say DELTA~SPREAD\n";
     text += fmt::format("significant at {}: {} of {}: power {:.4f}, 95 % interval {:.4f} to {:.4f}\n", job.alpha,
                         s.significant, s.studies, s.power, s.power_interval.low, s.power_interval.high);
     if (s.untested > 0) text += fmt::format("{} studies had too few values for a test\n", s.untested);

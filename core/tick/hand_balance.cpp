@@ -239,8 +239,8 @@ Turns balanceHands(std::span<const HandInTick> hands, std::span<const Pose> X_WH
         push(hands[contact.hand], contact.obstacle, contact.point, along);
         if (contact.other == BalancedContact::kNobody) continue;
         gives_way[contact.hand] += balance.givesWay(i, contact.hand);
-        const std::size_t body = hands[contact.hand].model->body, own = hands[contact.other].model->body;
-        push(hands[contact.other], body < own ? body : body - 1, contact.point, -along);
+        const std::size_t obstacle = hands[contact.other].model->obstacleOf(hands[contact.hand].model->body);
+        push(hands[contact.other], obstacle, contact.point, -along);
         gives_way[contact.other] += balance.givesWay(i, contact.other);
         touched[contact.hand] = touched[contact.other] = true;
     }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/assert.h"
 #include "core/field/distance_field.h"
 #include "core/scene/part_mass.h"
 #include "core/tick/hand_state.h"
@@ -115,12 +114,7 @@ void addSnapPlaces(HandModel& model, const scene::SceneSpec& spec, std::size_t h
     for (const scene::AssemblyStep& step : spec.effects.pick.steps) {
         if (step.part != model.body) continue;
         SnapPlace place{.X_IS = step.X_IGoal, .folds = step.folds};
-        if (step.into != scene::AssemblyStep::kWorld) {
-            const auto is_it = [&step](const Obstacle& obstacle) { return obstacle.body == step.into; };
-            const auto into = std::find_if(model.obstacles.begin(), model.obstacles.end(), is_it);
-            PASSUNG_ASSERT(into != model.obstacles.end());  // all but the part itself
-            place.into = static_cast<std::size_t>(into - model.obstacles.begin());
-        }
+        if (step.into != scene::AssemblyStep::kWorld) place.into = model.obstacleOf(step.into);
         model.snap_places.push_back(place);
     }
 }

@@ -84,6 +84,8 @@ struct HandModel {
 
     bool hasPart() const noexcept { return body != kNoBody; }
     bool hasObstacles() const noexcept { return !obstacles.empty(); }
+    /// Where another body stands among the obstacles, which are all bodies but its own. @pre `other` != body
+    std::size_t obstacleOf(std::size_t other) const noexcept { return other < body ? other : other - 1; }
     /// Parts in other hands may move while this one's does.
     bool meetsHands() const noexcept { return has_others && !moving.empty(); }
     bool rendersAtHand() const noexcept { return hasObstacles() && contact.rendersAtHand(); }

@@ -92,7 +92,7 @@ void noteOthers(const HandModel& model, const TickState& whole, std::size_t hand
         return std::any_of(whole.holds.begin(), whole.holds.end(), [=](const Hold& h) { return h.body == body; });
     };
     const auto add = [&](std::size_t body, bool rests) {
-        const auto obstacle = static_cast<std::uint32_t>(body < model.body ? body : body - 1);
+        const auto obstacle = static_cast<std::uint32_t>(model.obstacleOf(body));
         std::size_t at = state.carried_count++;
         for (; at > 0 && state.carried[at - 1].obstacle > obstacle; --at) state.carried[at] = state.carried[at - 1];
         state.carried[at] = {obstacle, whole.X_WP[body], rests};

@@ -252,6 +252,21 @@ private:
             ->check(wholeFrom(1));
     }
 
+    static void addAnonymity(CLI::App* sub, ExportArguments& options) {
+        auto* anonymous =
+            sub->add_flag("--anonymous", options.anonymous,
+                          "for others than the lab: times of each person set back by whole weeks that nobody keeps, "
+                          "texts that somebody "
+                          "typed left out; anonymity.csv says where, and which answers only few persons gave");
+        sub->add_option("--band", options.bands,
+                        "QUESTIONNAIRE.ITEM=WIDTH: answers told as the low end of ranges, demographics.age=10")
+            ->needs(anonymous);
+        sub->add_option("--small-cell", options.least_persons,
+                        "number of persons below which an answer is listed; default 5")
+            ->check(wholeFrom(1))
+            ->needs(anonymous);
+    }
+
     void addDataCommands() {
         auto* sub = command("export", "write all data as tables", export_, exportData);
         sub->add_option("DB", export_.database, "database of a study")->required();
@@ -261,6 +276,7 @@ private:
                         "plain: tables by their names; psych-ds: in data/, by the names and with the description of "
                         "Psych-DS (plain)")
             ->check(CLI::IsMember({"plain", "psych-ds"}));
+        addAnonymity(sub, export_);
         addGroup(sub, export_.group);
 
         sub = command("report",
@@ -272,6 +288,7 @@ private:
         report_.no_samples = true;
         sub->add_flag("!--samples,--no-samples", report_.no_samples,
                       "with --samples every recorded tick too; default: those that the pictures show");
+        addAnonymity(sub, report_);
         addGroup(sub, report_.group);
 
         sub = command("merge", "put the databases of several stations together", merge_, merge);
@@ -309,8 +326,11 @@ private:
         auto* protocol = sub->add_option("PROTOCOL", power_.protocol, "study file (.toml)");
         auto* effect = sub->add_option(
             "--effect", power_.effect,
-            "effect FACTOR:LEVEL=DELTA, planted in every virtual study at one level of a factor. DELTA is +0.3 or -0.3 "
-            "(added, in the measure's unit) or x1.2 (multiplied); +0 gives the rate of false positives");
+            "effect FACTOR:LEVEL=DELTA~SPREAD, planted in every virtual study at one level of a factor. DELTA is +0.3 "
+            "or "
+            "-0.3 (added, in the measure's unit) or x1.2 (multiplied); +0 gives the rate of false positives. ~SPREAD: "
+            "standard deviation of the effect between persons, of the logarithm where it is multiplied; without it "
+            "everybody has the same effect, and the power is too high");
         sub->add_option("--against", power_.against, "level to compare with; default: the factor's first other one");
         sub->add_option("--measure", power_.measure, "measure of a trial; default time_s");
         sub->add_option("--test", power_.test,

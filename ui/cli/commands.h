@@ -113,6 +113,9 @@ struct ExportArguments {
     bool no_samples = false;
     bool group = false;
     std::string format = "plain";  // "psych-ds"
+    bool anonymous = false;
+    std::vector<std::string> bands = {};  // as exporter::readBand() takes them
+    std::int64_t least_persons = 5;
 };
 int exportData(const ExportArguments& options);
 int reportData(const ExportArguments& options);

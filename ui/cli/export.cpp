@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <optional>
+#include <random>
+
 #include "analysis/report/report.h"
 #include "study/run/files/known_exports.h"
 #include "ui/cli/commands.h"
@@ -21,9 +25,33 @@ void noteExport(const ExportArguments& options, const std::string& kept) {
                            "it unless it lies beside the database"});
 }
 
+/// Whether somebody asked for it, and how.
+Result<std::optional<exporter::Anonymity>> anonymityOf(const ExportArguments& options) {
+    if (!options.anonymous) return std::optional<exporter::Anonymity>();
+    exporter::Anonymity anonymity;
+    for (const std::string& text : options.bands) {
+        const auto band = exporter::readBand(text);
+        if (!band) return band.errors();
+        anonymity.bands.push_back(*band);
+    }
+    anonymity.least_persons = options.least_persons;
+    std::random_device of_the_system;
+    anonymity.seed = (std::uint64_t{of_the_system()} << 32) | of_the_system();
+    return std::optional(anonymity);
+}
+
+void tellAnonymity(const ExportArguments& options) {
+    if (options.anonymous)
+        fmt::print(
+            "{}/anonymity.csv: what was changed, and answers that point to somebody; codes of participants stay\n",
+            options.out);
+}
+
 }  // namespace
 
 int exportData(const ExportArguments& options) {
+    const auto anonymity = anonymityOf(options);
+    if (!anonymity) return fail(anonymity.errors());
     const auto reader = store::StoreReader::open(
         options.database, options.no_samples ? store::Damaged::LeftOut : store::Damaged::LeftOutWithSamples);
     if (!reader) return fail(reader.errors());
@@ -32,29 +60,36 @@ int exportData(const ExportArguments& options) {
         *reader, options.out,
         {.samples = !options.no_samples,
          .psych_ds = options.format == "psych-ds",
+         .anonymity = *anonymity,
          .group = options.group,
          .progress = [&](double share) { progress.show(fmt::format("exporting: {:.0f} %", 100.0 * share)); }});
     if (!report) return fail(report.errors());
     progress.show("");
     noteExport(options, report->kept);
     fmt::print("{}: {} attempts in {} files\n", options.out, report->attempts, report->files);
+    tellAnonymity(options);
     return tellDamages(options.database, reader->damages(), "left out, see missing.csv") ? 1 : 0;
 }
 
 int reportData(const ExportArguments& options) {
+    const auto anonymity = anonymityOf(options);
+    if (!anonymity) return fail(anonymity.errors());
     const auto reader = store::StoreReader::open(
         options.database, options.no_samples ? store::Damaged::LeftOut : store::Damaged::LeftOutWithSamples);
     if (!reader) return fail(reader.errors());
     ProgressLine progress;
     const auto outcome = report::writeReport(
-        *reader, options.out, {.samples = !options.no_samples, .group = options.group, .progress = [&](double share) {
-                                   progress.show(fmt::format("exporting: {:.0f} %", 100.0 * share));
-                               }});
+        *reader, options.out,
+        {.samples = !options.no_samples,
+         .anonymity = *anonymity,
+         .group = options.group,
+         .progress = [&](double share) { progress.show(fmt::format("exporting: {:.0f} %", 100.0 * share)); }});
     progress.show("");
     if (!outcome) return fail(outcome.errors());
     noteExport(options, outcome->tables.kept);
     fmt::print("{}: {} attempts in {} files, planned analyses: {}\n", options.out, outcome->tables.attempts,
                outcome->tables.files, outcome->analyses);
+    tellAnonymity(options);
     warn(options.out, outcome->said);
     const bool damaged = tellDamages(options.database, reader->damages(), "left out, see missing.csv");
     if (!outcome->failed.empty())

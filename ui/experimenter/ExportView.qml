@@ -2,7 +2,7 @@ import QtQuick
 import QtQuick.Layouts
 import "../controls"
 
-// Writes the whole database as tables.
+// Writes the whole database as tables, with a report of the planned analyses if that is asked for.
 ColumnLayout {
     id: view
     spacing: 10
@@ -30,6 +30,13 @@ ColumnLayout {
             objectName: "exportSamples"
             text: qsTr("with every tick")
             checked: true
+        }
+        ActionButton {
+            objectName: "report"
+            text: qsTr("Report")
+            visible: !records.exporting
+            why: run.running ? qsTr("R would take time from the running session.") : ""
+            onClicked: records.reportTo(folder.text, samples.checked)
         }
         ActionButton {
             objectName: "export"
@@ -62,7 +69,13 @@ ColumnLayout {
             font.pixelSize: look.scale * 12
             wrapMode: Text.WordWrap
             maximumLineCount: 2
-            text: records.exporting ? qsTr("%1 %").arg(Math.round(100 * records.exported)) : qsTr("CSV tables with a codebook; the same data gives the same bytes. An earlier export in the folder is replaced, a folder with other files is refused.")
+            text: records.reporting && records.exported >= 1 ? qsTr("R computes the planned analyses …") : records.exporting ? qsTr("%1 %").arg(Math.round(100 * records.exported)) : qsTr("CSV tables with a codebook; a report adds the planned analyses, computed by R. An earlier export in the folder is replaced, a folder with other files is refused.")
+        }
+        ActionButton {
+            objectName: "openReport"
+            visible: records.lastReport !== ""
+            text: qsTr("Open the report")
+            onClicked: Qt.openUrlExternally("file://" + records.lastReport)
         }
         ActionButton {
             objectName: "openFolder"

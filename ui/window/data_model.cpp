@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "analysis/export/export.h"
 #include "study/run/files/known_exports.h"
 #include "ui/presenter/axis.h"
 #include "ui/window/data_words.h"
@@ -227,12 +226,41 @@ QString DataModel::proposedFolder() const {
     return documents + "/passung-export/" + (card != nullptr ? text(card->name) : QStringLiteral("study"));
 }
 
-void DataModel::exportTo(const QString& folder, bool samples) {
+namespace {
+
+/// The tables, with the planned analyses or without.
+Result<report::ReportOutcome> writeFolder(const std::string& database, const std::string& folder, bool with_report,
+                                          const exporter::ExportOptions& options) {
+    const auto reader = store::StoreReader::open(
+        database, options.samples ? store::Damaged::LeftOutWithSamples : store::Damaged::LeftOut);
+    if (!reader) return reader.errors();
+    std::error_code problem;  // shows when the folder is begun
+    std::filesystem::create_directories(std::filesystem::path(folder).parent_path(), problem);
+    report::ReportOutcome outcome;
+    if (with_report) {
+        auto written = report::writeReport(*reader, folder, options);
+        if (!written) return written.errors();
+        outcome = *std::move(written);
+    } else {
+        auto tables = exporter::exportAll(*reader, folder, options);
+        if (!tables) return tables.errors();
+        outcome.tables = *std::move(tables);
+    }
+    run::rememberExport(database, folder);
+    if (!outcome.tables.kept.empty()) run::rememberExport(database, outcome.tables.kept);
+    return outcome;
+}
+
+}  // namespace
+
+void DataModel::write(const QString& folder, bool samples, bool with_report) {
     if (exporting_ || !recorded_ || folder.trimmed().isEmpty()) return;
     exporting_ = true;
+    reporting_ = with_report;
     exported_ = 0.0;
     cancelled_ = false;
     last_folder_.clear();
+    last_report_.clear();
     told_.clear();
     exporter::ExportOptions options;
     options.samples = samples;
@@ -247,30 +275,36 @@ void DataModel::exportTo(const QString& folder, bool samples) {
             Qt::QueuedConnection);
     };
     const QString to = folder.trimmed();
-    worker_.run(
-        [database = database().toStdString(), out = to.toStdString(), options]() -> Result<exporter::ExportReport> {
-            const auto reader = store::StoreReader::open(
-                database, options.samples ? store::Damaged::LeftOutWithSamples : store::Damaged::LeftOut);
-            if (!reader) return reader.errors();
-            std::error_code problem;  // shows when the folder is begun
-            std::filesystem::create_directories(std::filesystem::path(out).parent_path(), problem);
-            auto report = exporter::exportAll(*reader, out, options);
-            if (report) run::rememberExport(database, out);
-            if (report && !report->kept.empty()) run::rememberExport(database, report->kept);
-            return report;
-        },
-        [this, to](const Result<exporter::ExportReport>& report) {
-            exporting_ = false;
-            failed_ = !report || report->missing > 0;
-            if (report) last_folder_ = to;
-            told_ = report       ? exportedLine(to, report->attempts, report->files, report->missing)
-                    : cancelled_ ? cancelledLine()
-                                 : text(toString(report.errors().front()));
-            if (report && !report->kept.empty()) told_ += "\n" + keptExportLine(text(report->kept));
-            emit changed();
-            emit exportChanged();
-        });
+    worker_.run([database = database().toStdString(), out = to.toStdString(), with_report,
+                 options] { return writeFolder(database, out, with_report, options); },
+                [this, to](const Result<report::ReportOutcome>& outcome) {
+                    exporting_ = false;
+                    tellWritten(to, outcome);
+                    emit changed();
+                    emit exportChanged();
+                });
     emit exportChanged();
+}
+
+void DataModel::tellWritten(const QString& folder, const Result<report::ReportOutcome>& outcome) {
+    failed_ = true;
+    if (!outcome) {
+        told_ = cancelled_ ? cancelledLine() : text(toString(outcome.errors().front()));
+        return;
+    }
+    const exporter::ExportReport& tables = outcome->tables;
+    failed_ = tables.missing > 0 || !outcome->failed.empty();
+    last_folder_ = folder;
+    told_ = exportedLine(folder, tables.attempts, tables.files, tables.missing);
+    if (!tables.kept.empty()) told_ += "\n" + keptExportLine(text(tables.kept));
+    if (!reporting_) return;
+    if (!outcome->missing.empty())
+        told_ += "\n" + reportNeedsLine(text(outcome->missing));
+    else if (!outcome->failed.empty())
+        told_ += "\n" + reportFailedLine(text(outcome->failed));
+    else
+        last_report_ = folder + "/report.html";
+    for (const std::string& line : outcome->said) told_ += "\n" + text(line);
 }
 
 void DataModel::retranslate() {

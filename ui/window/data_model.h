@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "analysis/report/report.h"
 #include "ui/presenter/recorded.h"
 #include "ui/window/desk.h"
 #include "ui/window/replay_model.h"
@@ -35,8 +36,10 @@ class DataModel : public QObject {
     Q_PROPERTY(QVariantMap look READ look NOTIFY changed)
     Q_PROPERTY(bool exporting READ exporting NOTIFY exportChanged)
     Q_PROPERTY(double exported READ exported NOTIFY exportChanged)  // share
+    Q_PROPERTY(bool reporting READ reporting NOTIFY exportChanged)  // what is being exported gets a report
     Q_PROPERTY(QString proposedFolder READ proposedFolder NOTIFY changed)
     Q_PROPERTY(QString lastFolder READ lastFolder NOTIFY exportChanged)  // of a finished export
+    Q_PROPERTY(QString lastReport READ lastReport NOTIFY exportChanged)  // its page; empty: none
 
 public:
     DataModel(Desk& desk, Studies& studies, ReplayModel& replay);
@@ -64,13 +67,17 @@ public:
     QVariantMap look() const;
     bool exporting() const { return exporting_; }
     double exported() const { return exported_; }
+    bool reporting() const { return exporting_ && reporting_; }
     QString proposedFolder() const;
     QString lastFolder() const { return last_folder_; }
+    QString lastReport() const { return last_report_; }
 
     Q_INVOKABLE void refresh() { read(true); }
     /// Shows an attempt of the selected session once more.
     Q_INVOKABLE void showAgain(int attempt);
-    Q_INVOKABLE void exportTo(const QString& folder, bool samples);
+    Q_INVOKABLE void exportTo(const QString& folder, bool samples) { write(folder, samples, false); }
+    /// An export with the planned analyses, which R computes where it is installed.
+    Q_INVOKABLE void reportTo(const QString& folder, bool samples) { write(folder, samples, true); }
     Q_INVOKABLE void cancelExport() { cancelled_ = true; }
     void retranslate();
 
@@ -80,13 +87,15 @@ signals:
 
 private:
     void read(bool looks);
+    void write(const QString& folder, bool samples, bool with_report);
+    void tellWritten(const QString& folder, const Result<report::ReportOutcome>& outcome);
 
     Desk& desk_;
     Studies& studies_;
     ReplayModel& replay_;
     int source_ = 0;
-    QString file_, told_, last_folder_;
-    bool failed_ = false, ran_ = false, exporting_ = false;
+    QString file_, told_, last_folder_, last_report_;
+    bool failed_ = false, ran_ = false, exporting_ = false, reporting_ = false;
     std::int64_t ended_ = 0;  // attempts of the running session, which the page follows
     double exported_ = 0.0;
     std::atomic<bool> cancelled_{false};

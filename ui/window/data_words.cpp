@@ -66,6 +66,14 @@ QString damagedLine(std::size_t damages) {
     return said(QT_TRANSLATE_NOOP("data", "Damaged and left out here: %1; passung verify names each")).arg(damages);
 }
 
+QString reportNeedsLine(const QString& command) {
+    return said(QT_TRANSLATE_NOOP("data", "The report's page needs what is not installed: %1")).arg(command);
+}
+
+QString reportFailedLine(const QString& words) {
+    return said(QT_TRANSLATE_NOOP("data", "R made no report of analysis.Rmd: %1")).arg(words);
+}
+
 QString cancelledLine() { return said(QT_TRANSLATE_NOOP("data", "The export was cancelled; nothing was written.")); }
 
 }  // namespace passung::window

@@ -19,6 +19,12 @@ QString exportedLine(const QString& folder, std::size_t attempts, std::size_t fi
 /// Where an earlier export is that the new one did not replace.
 QString keptExportLine(const QString& kept);
 QString cancelledLine();
+
+/// `command` installs what R lacks.
+QString reportNeedsLine(const QString& command);
+/// `words`: the last that R said.
+QString reportFailedLine(const QString& words);
+
 QString damagedLine(std::size_t damages);
 
 }  // namespace passung::window

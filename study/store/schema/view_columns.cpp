@@ -79,7 +79,11 @@ Columns trialColumns() {
         {"valid", "(a.valid AND pa.status<>'excluded')", "1 if the attempt may be analysed"},
         {"invalid_reason",
          "CASE WHEN a.valid AND pa.status='excluded' THEN 'participant excluded' ELSE a.invalid_reason END",
-         "Why the attempt may not be analysed"},
+         "Why the attempt may not be analysed",
+         {},
+         {},
+         1,
+         true},
         {"counted",
          std::string("(t.phase='main' AND a.valid AND ") + kEnded + " AND " + countedSession() + ")",
          "1 if cells_long.csv and the wide tables count the attempt",
@@ -93,7 +97,11 @@ Columns trialColumns() {
                      "'no reason is stored') WHEN NOT ") +
              kEnded + " THEN a.outcome WHEN NOT " + countedSession() +
              " THEN 'a complete or later session of the participant counts' END",
-         "Why they do not count it; NA: they do"},
+         "Why they do not count it; NA: they do",
+         {},
+         {},
+         1,
+         true},
         {"feedback_given",
          "(SELECT coalesce(nullif(substr(CASE WHEN y.force_ticks>0 THEN '+kinesthetic' ELSE '' END || CASE WHEN "
          "y.visual_frames>0 THEN '+visual' ELSE '' END || CASE WHEN y.vibrotactile_ticks>0 THEN '+vibrotactile' ELSE "
@@ -265,7 +273,7 @@ Columns eventColumns() {
             {"attempt_no", "a.attempt_no", "Attempt that it belongs to"},
             {"source", "e.source", "Who reported it"},
             {"event", "e.event", "What happened"},
-            {"payload_json", "e.payload_json", "More about it, as JSON"}};
+            {"payload_json", "e.payload_json", "More about it, as JSON", {}, {}, 1, true}};
 }
 
 const char* const kFromEvents =

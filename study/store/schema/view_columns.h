@@ -16,6 +16,7 @@ struct ViewColumn {
     std::string unit = {};     // empty: none
     std::string formula = {};  // empty: as recorded
     int formula_version = 1;
+    bool typed = false;  // texts that somebody typed: they may name a person
 };
 
 enum class StudyView { Trials, Cells, Scores, Events, Thresholds };

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "analysis/power/model_study.h"
 #include "tests/analysis/power/small_plan.h"
@@ -36,6 +38,15 @@ TEST(PlantedEffect, IsReadAsWritten) {
     EXPECT_EQ(addedBy("method:b=c=-0.25"), -0.25);
     EXPECT_EQ(addedBy("method:a=+0"), 0.0);
     EXPECT_FALSE(addedBy("method:a=x1.5"));
+    const PlantedEffect spread = effectOf("method:b=c=-0.25~0.2");
+    EXPECT_EQ(spread.level, "b=c");
+    EXPECT_EQ(spread.shift, -0.25);
+    EXPECT_EQ(spread.spread, 0.2);
+    EXPECT_EQ(effectOf("size:1=x1.5~0.1").spread, 0.1);
+    EXPECT_EQ(addedBy("method:b=c=-0.25~0.2"), -0.25);
+    EXPECT_FALSE(addedBy("method:a=x1.5~0.1"));
+    EXPECT_TRUE(saysSpread("method:a=+1~0"));
+    EXPECT_FALSE(saysSpread("a~b:a=+1"));
 }
 
 TEST(PlantedEffect, NamesWhatThePlanDoesNotHave) {
@@ -54,6 +65,9 @@ TEST(PlantedEffect, NamesWhatThePlanDoesNotHave) {
               "error: --measure: tip: must be a measure of the protocol: completion_time_s, peak_force_N");
     for (const char* delta : {"1", "x0", "x-2", "+", "x", "+inf", "+1s", ""})
         EXPECT_NE(message(std::string("method:a=") + delta).find("DELTA must be"), std::string::npos) << delta;
+    for (const char* spread : {"", "-0.1", "x", "inf", "0.1~0.1"})
+        EXPECT_NE(message(std::string("method:a=+1~") + spread).find("SPREAD behind ~ must be"), std::string::npos)
+            << spread;
 }
 
 TEST(PlantedEffect, ChangesTheMeasureAtItsLevelOnly) {
@@ -62,7 +76,7 @@ TEST(PlantedEffect, ChangesTheMeasureAtItsLevelOnly) {
     exporter::StudyData after = before;
     PlantedEffect effect = effectOf("method:d=x2");
     effect.shift = 0.5;
-    plant(effect, after);
+    plant(effect, 1, after);
     ASSERT_EQ(after.attempts.size(), 2u * 13u);
     int changed = 0;
     for (std::size_t i = 0; i < after.attempts.size(); ++i) {
@@ -72,6 +86,41 @@ TEST(PlantedEffect, ChangesTheMeasureAtItsLevelOnly) {
         changed += there ? 1 : 0;
     }
     EXPECT_GE(changed, 8);
+}
+
+/// What a planted effect adds to (or, multiplied, the logarithm of what it multiplies by) each person's attempts.
+std::map<std::string, std::set<double>> givenTo(int people, const PlantedEffect& effect, std::uint64_t seed) {
+    const exporter::StudyData before = *modelStudy(smallPlan(), people);
+    exporter::StudyData after = before;
+    plant(effect, seed, after);
+    std::map<std::string, std::set<double>> given;
+    for (std::size_t i = 0; i < after.attempts.size(); ++i) {
+        const double was = before.attempts[i].measures.at(kTime), is = after.attempts[i].measures.at(kTime);
+        if (!after.attempts[i].condition.starts_with("d/")) continue;
+        // Rounded to what the difference of two times of some seconds holds.
+        given[after.attempts[i].participant_id].insert(
+            std::round(1e9 * (effect.scale != 1.0 ? std::log(is / was) : is - was)) / 1e9);
+    }
+    return given;
+}
+
+TEST(PlantedEffect, DiffersBetweenPersonsByItsSpreadAndNotWithinThem) {
+    // Truth: closed form: mean and standard deviation of 2000 normal draws, each within four standard errors.
+    for (const auto& [text, mean] :
+         {std::pair("method:d=+0.3~0.2", 0.3), std::pair("method:d=x1.5~0.2", std::log(1.5))}) {
+        const auto given = givenTo(2000, effectOf(text), 5);
+        ASSERT_EQ(given.size(), 2000u);
+        double sum = 0.0, squares = 0.0;
+        for (const auto& [code, values] : given) {
+            EXPECT_EQ(values.size(), 1u) << code << " has an effect of each attempt";
+            sum += *values.begin();
+            squares += (*values.begin() - mean) * (*values.begin() - mean);
+        }
+        EXPECT_NEAR(sum / 2000.0, mean, 4.0 * 0.2 / std::sqrt(2000.0));
+        EXPECT_NEAR(std::sqrt(squares / 2000.0), 0.2, 4.0 * 0.2 / std::sqrt(4000.0));
+    }
+    EXPECT_EQ(givenTo(3, effectOf("method:d=+0.3~0.2"), 5), givenTo(3, effectOf("method:d=+0.3~0.2"), 5));
+    EXPECT_NE(givenTo(3, effectOf("method:d=+0.3~0.2"), 5), givenTo(3, effectOf("method:d=+0.3~0.2"), 6));
 }
 
 std::vector<double> timesOf(const exporter::StudyData& study) {

@@ -30,11 +30,12 @@ inline plan::StudyPlan makeAskingPlan() {
     return plan;
 }
 
-inline std::unique_ptr<store::SessionWriter> beginAskingSession(store::Store& store, const plan::StudyPlan& plan,
-                                                                const std::string& participant, std::int64_t trials) {
+inline std::unique_ptr<store::SessionWriter> beginAskingSession(
+    store::Store& store, const plan::StudyPlan& plan, const std::string& participant, std::int64_t trials,
+    plan::ParticipantKind kind = plan::ParticipantKind::Simulated) {
     store::SessionStart start;
     start.protocol_sha256 = require(store.importProtocol(plan));
-    require(store.enrol(participant, plan::ParticipantKind::Simulated, store::UtcClock::virtualEpoch().at(0)));
+    require(store.enrol(participant, kind, store::UtcClock::virtualEpoch().at(0)));
     require(store.assignSlot(start.protocol_sha256, participant));
     start.participant = participant;
     start.seed = plan.seed;

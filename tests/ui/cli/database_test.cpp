@@ -96,5 +96,17 @@ TEST_F(QueriedDatabase, IsExportedAsPsychDsToo) {
     EXPECT_EQ(run({"export", "s.db", "--out", "other", "--format", "xlsx"}), 2) << "no such format";
 }
 
+TEST_F(QueriedDatabase, IsExportedForOthersThanTheLab) {
+    // Truth: invariant: what is asked for is there or refused; simulated participants stay as they are.
+    ASSERT_EQ(run({"export", "s.db", "--out", "open", "--no-samples"}), 0);
+    ASSERT_EQ(run({"export", "s.db", "--out", "out", "--no-samples", "--anonymous"}), 0);
+    EXPECT_EQ(readText(folder_ / "out/events.csv"), readText(folder_ / "open/events.csv"));
+    EXPECT_NE(readText(folder_ / "out/codebook.csv").find("anonymity.csv,"), std::string::npos);
+    EXPECT_EQ(run({"export", "s.db", "--out", "other", "--band", "a.b=10"}), 2) << "needs --anonymous";
+    EXPECT_EQ(run({"export", "s.db", "--out", "other", "--anonymous", "--band", "a.b"}), 1);
+    EXPECT_EQ(run({"export", "s.db", "--out", "other", "--anonymous", "--band", "a.b=10"}), 1) << "nobody was asked";
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "other"));
+}
+
 }  // namespace
 }  // namespace passung::test

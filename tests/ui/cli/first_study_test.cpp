@@ -31,10 +31,10 @@ TEST(FirstStudy, TheStudyThatTheTutorialWritesRunsAsItSays) {
     const Ended checked = runProgram(folder.path(), {"check", "study.toml"});
     EXPECT_EQ(checked.err, "");
     EXPECT_EQ(checked.out, "study.toml: ok: tight_or_soft 1.0, 4 conditions, 14 trials for each of 8 participants\n");
-    const Ended effect = runProgram(folder.path(), {"power", "study.toml", "--effect", "clearance:0.25=+0.5",
+    const Ended effect = runProgram(folder.path(), {"power", "study.toml", "--effect", "clearance:0.25=+0.5~0.3",
                                                     "--simulation", "model", "--repeats", "20"});
     EXPECT_EQ(effect.exit_code, 0) << effect.err;
-    EXPECT_NE(tutorial.find("--effect \"clearance:0.25=+0.5\" --simulation model"), std::string::npos);
+    EXPECT_NE(tutorial.find("--effect \"clearance:0.25=+0.5~0.3\" --simulation model"), std::string::npos);
 }
 
 /// The words of a line of a shell without quotes, up to its comment.

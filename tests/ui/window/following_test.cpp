@@ -3,6 +3,7 @@
 
 #include "tests/support/count_checks.h"
 #include "tests/ui/cli/small_study.h"
+#include "tests/ui/window/four_trials.h"
 #include "tests/ui/window/windows.h"
 
 // Pages and commands that follow a running session.
@@ -17,7 +18,7 @@ protected:
     void SetUp() override {
         protocols_ = folder_ / "studies";
         std::filesystem::create_directories(protocols_ + "/small");
-        std::ofstream(protocols_ + "/small/study.toml") << smallStudy();
+        std::ofstream(protocols_ + "/small/study.toml") << smallStudy() << kOnAnyMachine;
         warnings.clear();
     }
 };

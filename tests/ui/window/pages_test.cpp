@@ -240,11 +240,13 @@ TEST_F(Pages, ASessionThatGoesOnIsDrawnAsItBegan) {
               1);
 }
 
-/// The checksums of an export's files.
-std::string sumsOf(const std::string& folder) {
-    std::ifstream file(folder + "/SHA256SUMS");
+std::string bytesOf(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
 }
+
+/// The checksums of an export's files.
+std::string sumsOf(const std::string& folder) { return bytesOf(folder + "/SHA256SUMS"); }
 
 TEST_F(Pages, RecordedSessionsAreLookedAtAndExported) {
     // Truth: invariant: the page writes the bytes that an export of the same data has.
@@ -265,6 +267,34 @@ TEST_F(Pages, RecordedSessionsAreLookedAtAndExported) {
     click("language");
     click("theme");
     shot("data_de_light");
+}
+
+TEST_F(Pages, AReportIsWrittenWithTheExport) {
+    // Truth: invariant: beside the page there are the tables of an export of the same data; without R's packages the
+    // line that installs them.
+    perform(2);
+    click("page-data");
+    app_->records().refresh();
+    settle();
+    EXPECT_EQ(textOf("openReport"), "(not shown)");
+    type("exportFolder", (folder_ / "out").c_str());
+    click("report");
+    waitFor([&] { return !app_->records().exporting(); });
+    EXPECT_FALSE(app_->records().failed()) << app_->records().told().toStdString();
+    ASSERT_TRUE(exporter::exportAll(reader(), folder_ / "other"));
+    for (const std::string table : {"trials.csv", "cells_long.csv"})
+        EXPECT_EQ(bytesOf(folder_ / "out" + ("/" + table)), bytesOf(folder_ / "other" + ("/" + table))) << table;
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out/analysis.Rmd"));
+    const bool has_page = std::filesystem::exists(folder_ / "out/report.html");
+    EXPECT_EQ(app_->records().lastReport().isEmpty(), !has_page);
+    if (has_page)
+        EXPECT_EQ(textOf("openReport"), "Open the report");
+    else
+        EXPECT_NE(app_->records().told().indexOf("apt"), -1) << app_->records().told().toStdString();
+    shot("data_report");
+    click("export");
+    waitFor([&] { return !app_->records().exporting(); });
+    EXPECT_EQ(textOf("openReport"), "(not shown)") << "the folder has no report any more";
 }
 
 TEST_F(Pages, WhatIsDamagedIsLeftOutAndSaidAndTheRestIsLookedAtAndExported) {

@@ -278,8 +278,24 @@
         <translation>%1 %</translation>
     </message>
     <message>
-        <source>CSV tables with a codebook; the same data gives the same bytes. An earlier export in the folder is replaced, a folder with other files is refused.</source>
-        <translation>CSV-Tabellen mit Codebuch; gleiche Daten ergeben gleiche Bytes. Ein früherer Export im Ordner wird ersetzt, ein Ordner mit anderen Dateien abgelehnt.</translation>
+        <source>CSV tables with a codebook; a report adds the planned analyses, computed by R. An earlier export in the folder is replaced, a folder with other files is refused.</source>
+        <translation>CSV-Tabellen mit Codebuch; ein Bericht fügt die geplanten Analysen hinzu, von R berechnet. Ein früherer Export im Ordner wird ersetzt, ein Ordner mit anderen Dateien abgelehnt.</translation>
+    </message>
+    <message>
+        <source>Report</source>
+        <translation>Bericht</translation>
+    </message>
+    <message>
+        <source>R computes the planned analyses …</source>
+        <translation>R berechnet die geplanten Analysen …</translation>
+    </message>
+    <message>
+        <source>Open the report</source>
+        <translation>Bericht öffnen</translation>
+    </message>
+    <message>
+        <source>R would take time from the running session.</source>
+        <translation>R nähme der laufenden Sitzung Zeit weg.</translation>
     </message>
     <message>
         <source>Open the folder</source>
@@ -1266,6 +1282,14 @@
     <message>
         <source>Damaged and left out here: %1; passung verify names each</source>
         <translation>Beschädigt und hier ausgelassen: %1; passung verify nennt jedes</translation>
+    </message>
+    <message>
+        <source>The report&apos;s page needs what is not installed: %1</source>
+        <translation>Die Seite des Berichts braucht, was nicht installiert ist: %1</translation>
+    </message>
+    <message>
+        <source>R made no report of analysis.Rmd: %1</source>
+        <translation>R machte keinen Bericht aus analysis.Rmd: %1</translation>
     </message>
     <message>
         <source>The export was cancelled; nothing was written.</source>
