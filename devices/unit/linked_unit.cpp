@@ -67,7 +67,9 @@ DeviceReading LinkedUnit::read() noexcept {
             handle_.advance(newest.said.V_D_B, last_commanded_, params_.description.workspace_radius_m);
         reading.X_BD = handle_.X_BD;
     } else {
-        reading.fresh = state == DeviceState::Ready && newest.number != std::exchange(number_read_, newest.number);
+        const bool is_new = newest.number != std::exchange(number_read_, newest.number);
+        const bool stands = !was_fresh_ && newest.number > 0 && now() - newest.at <= in(params_.reading_stands);
+        reading.fresh = was_fresh_ = state == DeviceState::Ready && (is_new || stands);
         reading.X_BD = newest.said.X_BD;
     }
     return reading;

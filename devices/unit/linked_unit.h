@@ -22,6 +22,7 @@ struct LinkedParams {
     bool pushes = true;
     int clutch = 0;                               // button, from 1, that lets go of a RateHandle; 0: none
     std::chrono::milliseconds heartbeat{5};       // that a wrench holds without the next
+    std::chrono::milliseconds reading_stands{5};  // without the next
     std::chrono::milliseconds stale_after{50};    // without a word, while it is lent
     std::chrono::milliseconds frozen_after{200};  // the same values to the last bit, while it is pushed
     std::chrono::milliseconds first_retry{100};   // of looking for it; doubled up to kLastRetry
@@ -30,6 +31,9 @@ struct LinkedParams {
 /// A unit behind a link, which has a thread of its own; the loop reads from a mailbox and commands into another, so
 /// that neither read() nor command() ever waits, whatever the link does. A wrench holds for a heartbeat and then counts
 /// as zero: a loop that hangs pushes nobody, and one that goes on gets its force back by a ramp.
+/// The loop and the unit have clocks of their own, so that now and then no reading comes between two ticks, or more of
+/// them: the newest is held for a tick, as the input guard does, and then taken again as long as it is young. An older
+/// one is not fresh, and the guard lets go within two ticks.
 class LinkedUnit final : public Unit {
 public:
     static constexpr std::chrono::milliseconds kLastRetry{2000};
@@ -100,6 +104,7 @@ private:
     // The loop's.
     loop::DeviceStatus status_;
     std::int64_t number_read_ = 0;
+    bool was_fresh_ = false;
     std::uint64_t number_commanded_ = 0;
     RateHandle handle_;
     Wrench last_commanded_;
