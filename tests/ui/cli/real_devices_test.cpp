@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <thread>
 
 #include "study/store/read/store_reader.h"
@@ -64,11 +65,13 @@ on_invalid = "never"
 )";
 }
 
-/// A hand at the service: holds the start pose, goes down into the hole, rests there, and comes back, again and again.
-/// Its grip is a spring: it gives way to the force that the fake displays.
+/// A hand that holds the start pose, goes down into the hole, rests there, and comes back, again and again. Its grip is
+/// a spring: it gives way to the force that the fake displays.
 class Hand {
 public:
-    explicit Hand(fake::HaplyService& service) : service_(service), thread_([this] { main(); }) {}
+    /// `move` puts the device so far [m] above the mouth, its hand trembling by `tremor` [m].
+    explicit Hand(std::function<void(double height, double tremor)> move)
+        : move_(std::move(move)), thread_([this] { main(); }) {}
     ~Hand() {
         stop_ = true;
         thread_.join();
@@ -79,20 +82,27 @@ private:
         for (int ms = 0; !stop_; ++ms) {
             const double t = 1e-3 * (ms % 1500);
             const double way = std::clamp((t - 0.4) / 0.4, 0.0, 1.0) - std::clamp((t - 1.2) / 0.2, 0.0, 1.0);
-            const auto felt = service_.felt("049D");
-            fake::HaplyDeviceState state;
-            // The origin of the device's base is the cursor's of the documented example.
-            state.position = {felt[0] / 2000.0 + 1e-6 * (ms % 3), -0.12 + felt[1] / 2000.0,
-                              0.15 + 0.008 - 0.015 * way + felt[2] / 2000.0};
-            service_.setState("049D", state);
+            move_(0.008 - 0.015 * way, 1e-6 * (ms % 3));
             poll(nullptr, 0, 1);
         }
     }
 
-    fake::HaplyService& service_;
+    std::function<void(double, double)> move_;
     std::atomic<bool> stop_ = false;
     std::thread thread_;
 };
+
+constexpr double kGrip = 2000.0;  // [N/m]
+
+/// At the service; the origin of the device's base is the cursor's of the documented example.
+std::function<void(double, double)> handAt(fake::HaplyService& service) {
+    return [&service](double height, double tremor) {
+        const auto felt = service.felt("049D");
+        fake::HaplyDeviceState state;
+        state.position = {felt[0] / kGrip + tremor, -0.12 + felt[1] / kGrip, 0.15 + height + felt[2] / kGrip};
+        service.setState("049D", state);
+    };
+}
 
 std::string stationOf(const fake::HaplyService& service) {
     return "[station.device.right]\nkind = \"inverse3\"\nbackend = \"haply\"\nserial = \"049D\"\naddress = "
@@ -100,35 +110,19 @@ std::string stationOf(const fake::HaplyService& service) {
            std::to_string(service.port()) + ":" + std::to_string(service.eventPort()) + "\"\n";
 }
 
-/// The same hand at a sigma.7 behind the shim of its library, whose x points to the operator and y to the right.
-class HandAtShim {
-public:
-    explicit HandAtShim(fake::DhdDevice& device) : device_(device), thread_([this] { main(); }) {}
-    ~HandAtShim() {
-        stop_ = true;
-        thread_.join();
-    }
-
-private:
-    void main() {
-        for (int ms = 0; !stop_; ++ms) {
-            const double t = 1e-3 * (ms % 1500);
-            const double way = std::clamp((t - 0.4) / 0.4, 0.0, 1.0) - std::clamp((t - 1.2) / 0.2, 0.0, 1.0);
-            const fake::DhdCommand command = device_.commands.last();
-            const double* felt = command.felt;
-            fake::DhdHand hand;
-            hand.position[0] = felt[0] / 2000.0;
-            hand.position[1] = 0.0013 + felt[1] / 2000.0 + 1e-6 * (ms % 3);  // along the bore's wall
-            hand.position[2] = 0.008 - 0.015 * way + felt[2] / 2000.0;
-            device_.hand.store(hand);
-            poll(nullptr, 0, 1);
-        }
-    }
-
-    fake::DhdDevice& device_;
-    std::atomic<bool> stop_ = false;
-    std::thread thread_;
-};
+/// At a sigma.7 behind the shim of its library, whose x points to the operator and y to the right; along the bore's
+/// wall.
+std::function<void(double, double)> handAt(fake::DhdDevice& device) {
+    return [&device](double height, double tremor) {
+        const fake::DhdCommand command = device.commands.last();
+        const double* felt = command.felt;
+        fake::DhdHand hand;
+        hand.position[0] = felt[0] / kGrip;
+        hand.position[1] = 0.0013 + felt[1] / kGrip + tremor;
+        hand.position[2] = height + felt[2] / kGrip;
+        device.hand.store(hand);
+    };
+}
 
 std::string stationOfShim(const std::string& serial = "4711") {
     return "[station.device.right]\nkind = \"sigma7\"\nbackend = \"dhd\"\nserial = \"" + serial +
@@ -178,6 +172,38 @@ void exportTo(const TempFolder& folder, const std::string& database, const std::
     ASSERT_EQ(ended.exit_code, 0) << ended.err;
 }
 
+/// The study on the station's device, in real time.
+std::vector<std::string> realRun(const std::string& database) {
+    return {"run",  "peg.toml", "--real-time",    "--participant", "T001",
+            "--db", database,   "--station-file", "station.toml"};
+}
+
+/// Continues the paused session as soon as its device is back, and waits for its end.
+void goOnToTheEnd(const TempFolder& folder, Program& program) {
+    Ended goes{};
+    for (int i = 0; i < 200; ++i) {
+        goes = runProgram(folder.path(), {"session", "continue", "s.db"});
+        if (goes.exit_code == 0) break;
+        poll(nullptr, 0, 50);
+    }
+    ASSERT_EQ(goes.exit_code, 0) << goes.out << goes.err;
+    while (program.nextAcknowledgement() != "") {
+    }
+    EXPECT_EQ(program.wait(), 0);
+}
+
+/// Runs the study simulated and expects the same files, columns and rows of real.db; its sessions.csv.
+std::string sessionsLikeSimulated(const TempFolder& folder) {
+    const Ended simulated = runProgram(folder.path(), {"run", "peg.toml", "--db", "simulated.db"});
+    EXPECT_EQ(simulated.exit_code, 0) << simulated.err;
+    exportTo(folder, "real.db", "real");
+    exportTo(folder, "simulated.db", "simulated");
+    EXPECT_EQ(filesOf(folder.path() / "real"), filesOf(folder.path() / "simulated"));
+    for (const char* table : {"trials.csv", "sessions.csv"})
+        EXPECT_EQ(shapeOf(folder.path() / "real" / table), shapeOf(folder.path() / "simulated" / table)) << table;
+    return readText(folder.path() / "real" / "sessions.csv");
+}
+
 TEST(RealDevices, AnInverse3RunsTheSameFileAsItsSimulationWithTheSameTables) {
     // Truth: invariant: same files, columns and rows a trial. The fake's own account says that a force was felt.
     const TempFolder folder;
@@ -185,9 +211,8 @@ TEST(RealDevices, AnInverse3RunsTheSameFileAsItsSimulationWithTheSameTables) {
     writeText(folder / "peg.toml", pegInHole("kind = \"inverse3\"", true));
     writeText(folder / "station.toml", stationOf(service));
     {
-        const Hand hand(service);
-        const Ended real = runProgram(folder.path(), {"run", "peg.toml", "--real-time", "--participant", "T001", "--db",
-                                                      "real.db", "--station-file", "station.toml"});
+        const Hand hand(handAt(service));
+        const Ended real = runProgram(folder.path(), realRun("real.db"));
         ASSERT_EQ(real.exit_code, 0) << real.out << real.err;
     }
     const auto attempts = attemptsOf(folder / "real.db");
@@ -202,14 +227,7 @@ TEST(RealDevices, AnInverse3RunsTheSameFileAsItsSimulationWithTheSameTables) {
     EXPECT_EQ(service.misunderstood(), 0);
     EXPECT_EQ(events(folder / "real.db", "device_"), (std::vector<std::string>{"device_present", "device_ready"}));
 
-    const Ended simulated = runProgram(folder.path(), {"run", "peg.toml", "--db", "simulated.db"});
-    ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
-    exportTo(folder, "real.db", "real");
-    exportTo(folder, "simulated.db", "simulated");
-    EXPECT_EQ(filesOf(folder.path() / "real"), filesOf(folder.path() / "simulated"));
-    for (const char* table : {"trials.csv", "sessions.csv"})
-        EXPECT_EQ(shapeOf(folder.path() / "real" / table), shapeOf(folder.path() / "simulated" / table)) << table;
-    const std::string sessions = readText(folder.path() / "real" / "sessions.csv");
+    const std::string sessions = sessionsLikeSimulated(folder);
     EXPECT_NE(sessions.find("haply"), std::string::npos);
     EXPECT_NE(sessions.find("049D"), std::string::npos);
 }
@@ -220,11 +238,8 @@ TEST(RealDevices, ADevicePulledInContactPausesTheSessionWhichGoesOnWhenItIsBack)
     fake::HaplyService service;
     writeText(folder / "peg.toml", pegInHole("kind = \"any\"\nleast_force_N = 3\nleast_degrees = 6", true));
     writeText(folder / "station.toml", stationOf(service));
-    const Hand hand(service);
-    Program program(
-        folder.path(),
-        {"run", "peg.toml", "--real-time", "--participant", "T001", "--db", "s.db", "--station-file", "station.toml"},
-        true);
+    const Hand hand(handAt(service));
+    Program program(folder.path(), realRun("s.db"), true);
     ASSERT_NE(program.nextAcknowledgement(), "");
     service.unplug("049D");
     ASSERT_NE(program.nextAcknowledgement(), "");
@@ -235,16 +250,7 @@ TEST(RealDevices, ADevicePulledInContactPausesTheSessionWhichGoesOnWhenItIsBack)
     EXPECT_NE((early.out + early.err).find("right (haply 049D) is lost: "), std::string::npos)
         << early.out << early.err;
     service.plug("049D");
-    Ended goes{};
-    for (int i = 0; i < 200; ++i) {
-        goes = runProgram(folder.path(), {"session", "continue", "s.db"});
-        if (goes.exit_code == 0) break;
-        poll(nullptr, 0, 50);
-    }
-    ASSERT_EQ(goes.exit_code, 0) << goes.out << goes.err;
-    while (program.nextAcknowledgement() != "") {
-    }
-    EXPECT_EQ(program.wait(), 0);
+    goOnToTheEnd(folder, program);
     const auto attempts = attemptsOf(folder / "s.db");
     ASSERT_EQ(attempts.size(), 5u);
     int lost = 0;
@@ -267,9 +273,8 @@ TEST(RealDevices, ASigma7RunsTheSameFileAsItsSimulationWithTheSameTables) {
     writeText(folder / "peg.toml", pegInHole("kind = \"sigma7\"", true));
     writeText(folder / "station.toml", stationOfShim());
     {
-        const HandAtShim hand(device);
-        const Ended real = runProgram(folder.path(), {"run", "peg.toml", "--real-time", "--participant", "T001", "--db",
-                                                      "real.db", "--station-file", "station.toml"});
+        const Hand hand(handAt(device));
+        const Ended real = runProgram(folder.path(), realRun("real.db"));
         ASSERT_EQ(real.exit_code, 0) << real.out << real.err;
     }
     const auto attempts = attemptsOf(folder / "real.db");
@@ -288,14 +293,7 @@ TEST(RealDevices, ASigma7RunsTheSameFileAsItsSimulationWithTheSameTables) {
         pushed = pushed || device.commands.row(row).felt[1] < -0.05;
     EXPECT_TRUE(pushed) << "in the last trials";
 
-    const Ended simulated = runProgram(folder.path(), {"run", "peg.toml", "--db", "simulated.db"});
-    ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
-    exportTo(folder, "real.db", "real");
-    exportTo(folder, "simulated.db", "simulated");
-    EXPECT_EQ(filesOf(folder.path() / "real"), filesOf(folder.path() / "simulated"));
-    for (const char* table : {"trials.csv", "sessions.csv"})
-        EXPECT_EQ(shapeOf(folder.path() / "real" / table), shapeOf(folder.path() / "simulated" / table)) << table;
-    const std::string sessions = readText(folder.path() / "real" / "sessions.csv");
+    const std::string sessions = sessionsLikeSimulated(folder);
     EXPECT_NE(sessions.find("dhd,4711"), std::string::npos) << sessions;
 }
 
@@ -306,11 +304,8 @@ TEST(RealDevices, ALibraryThatCrashesInContactPausesTheSessionWhichGoesOn) {
     fake::DhdDevice& device = block->devices[0];
     writeText(folder / "peg.toml", pegInHole("kind = \"any\"\nleast_force_N = 3\nleast_degrees = 6", true));
     writeText(folder / "station.toml", stationOfShim());
-    const HandAtShim hand(device);
-    Program program(
-        folder.path(),
-        {"run", "peg.toml", "--real-time", "--participant", "T001", "--db", "s.db", "--station-file", "station.toml"},
-        true);
+    const Hand hand(handAt(device));
+    Program program(folder.path(), realRun("s.db"), true);
     ASSERT_NE(program.nextAcknowledgement(), "");
     device.fault = fake::DhdFault::Crash;
     ASSERT_NE(program.nextAcknowledgement(), "");
@@ -320,16 +315,7 @@ TEST(RealDevices, ALibraryThatCrashesInContactPausesTheSessionWhichGoesOn) {
     EXPECT_NE(early.exit_code, 0);
     EXPECT_NE((early.out + early.err).find("ended by signal 11"), std::string::npos) << early.out << early.err;
     device.fault = fake::DhdFault::None;
-    Ended goes{};
-    for (int i = 0; i < 200; ++i) {
-        goes = runProgram(folder.path(), {"session", "continue", "s.db"});
-        if (goes.exit_code == 0) break;
-        poll(nullptr, 0, 50);
-    }
-    ASSERT_EQ(goes.exit_code, 0) << goes.out << goes.err;
-    while (program.nextAcknowledgement() != "") {
-    }
-    EXPECT_EQ(program.wait(), 0);
+    goOnToTheEnd(folder, program);
     const auto attempts = attemptsOf(folder / "s.db");
     ASSERT_EQ(attempts.size(), 5u);
     const auto lost = std::count_if(attempts.begin(), attempts.end(), [](const store::AttemptRow& attempt) {

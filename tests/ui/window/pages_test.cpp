@@ -98,6 +98,13 @@ text.de = "Sie nehmen teil."
         const QQuickItem* found = item(app_->experimenter(), name);
         return found != nullptr && found->isEnabled();
     }
+    /// The page of data, of two simulated participants.
+    void seeRecords() {
+        perform(2);
+        click("page-data");
+        app_->records().refresh();
+        settle();
+    }
     QImage shot(const char* name) { return picture(app_->experimenter(), name); }
 };
 
@@ -250,10 +257,7 @@ std::string sumsOf(const std::string& folder) { return bytesOf(folder + "/SHA256
 
 TEST_F(Pages, RecordedSessionsAreLookedAtAndExported) {
     // Truth: invariant: the page writes the bytes that an export of the same data has.
-    perform(2);
-    click("page-data");
-    app_->records().refresh();
-    settle();
+    seeRecords();
     EXPECT_EQ(textOf("noData"), "(not shown)");
     const QImage look = shot("data");
     EXPECT_GT(pixelsLike(look.copy(410, 150, 860, 400), app_->look().accent(), 60), 200) << "no strips are drawn";
@@ -272,10 +276,7 @@ TEST_F(Pages, RecordedSessionsAreLookedAtAndExported) {
 TEST_F(Pages, AReportIsWrittenWithTheExport) {
     // Truth: invariant: beside the page there are the tables of an export of the same data; without R's packages the
     // line that installs them.
-    perform(2);
-    click("page-data");
-    app_->records().refresh();
-    settle();
+    seeRecords();
     EXPECT_EQ(textOf("openReport"), "(not shown)");
     type("exportFolder", (folder_ / "out").c_str());
     click("report");
@@ -299,10 +300,7 @@ TEST_F(Pages, AReportIsWrittenWithTheExport) {
 
 TEST_F(Pages, WhatIsDamagedIsLeftOutAndSaidAndTheRestIsLookedAtAndExported) {
     // Truth: invariant: one changed value takes its attempt from the page and from the export, nothing else.
-    perform(2);
-    click("page-data");
-    app_->records().refresh();
-    settle();
+    seeRecords();
     const auto whole = app_->records().attempts().size();
     ASSERT_TRUE(exporter::exportAll(reader(), folder_ / "out"));
     store::Database(database(), store::OpenMode::ReadWrite)
