@@ -57,9 +57,9 @@ std::pair<std::string_view, std::optional<std::string_view>> parted(std::string_
     return {delta.substr(0, mark), delta.substr(mark + 1)};
 }
 
-bool readSpread(std::string_view text, PlantedEffect& effect) {
+bool readSpread(std::string_view text, bool multiplied, PlantedEffect& effect) {
     const auto spread = numberIn(text);
-    effect.spread = spread.value_or(0.0);
+    (multiplied ? effect.log_scale_spread : effect.shift_spread) = spread.value_or(0.0);
     return spread && *spread >= 0.0;
 }
 
@@ -77,7 +77,7 @@ Result<PlantedEffect> readEffect(const std::string& text, const std::string& aga
     const auto [middle, spread] = parted(deltaOf(text));
     if (!readMiddle(middle, effect))
         return wrong("--effect", text, "DELTA must be +NUMBER or -NUMBER, added, or xNUMBER > 0, multiplied");
-    if (spread && !readSpread(*spread, effect))
+    if (spread && !readSpread(*spread, middle.starts_with('x'), effect))
         return wrong("--effect", text, "SPREAD behind ~ must be a number of at least 0");
     const auto factor = std::find_if(plan.factors.begin(), plan.factors.end(),
                                      [&](const plan::Factor& f) { return f.name == effect.factor; });
@@ -107,11 +107,10 @@ std::optional<double> addedBy(const std::string& text) {
 bool saysSpread(const std::string& text) { return parted(deltaOf(text)).second.has_value(); }
 
 void plant(const PlantedEffect& effect, std::uint64_t seed, exporter::StudyData& study) {
-    const bool multiplied = effect.scale != 1.0;
-    std::map<std::string, double> deviations;  // from everybody's effect, by person
+    std::map<std::string, double> deviations;  // from everybody's effect, in standard deviations, by person
     const auto deviationOf = [&](const std::string& code) {
         const auto [found, is_new] = deviations.try_emplace(code, 0.0);
-        if (is_new) found->second = effect.spread * Random(streamSeed("", code, "power", "effect", seed)).normal();
+        if (is_new) found->second = Random(streamSeed("", code, "power", "effect", seed)).normal();
         return found->second;
     };
     for (store::AttemptRow& attempt : study.attempts) {
@@ -119,8 +118,8 @@ void plant(const PlantedEffect& effect, std::uint64_t seed, exporter::StudyData&
         const auto found = attempt.measures.find(effect.measure);
         if (found == attempt.measures.end()) continue;
         const double own = deviationOf(attempt.participant_id);
-        found->second =
-            effect.scale * (multiplied ? std::exp(own) : 1.0) * found->second + effect.shift + (multiplied ? 0.0 : own);
+        found->second = effect.scale * std::exp(effect.log_scale_spread * own) * found->second + effect.shift +
+                        effect.shift_spread * own;
     }
 }
 

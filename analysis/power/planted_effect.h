@@ -11,15 +11,17 @@
 namespace passung::power {
 
 /// What every virtual study is given on top of its own data: in all attempts of one level of a factor the measure is
-/// multiplied, then shifted. That level is compared with another one. Persons differ in it by `spread`.
+/// multiplied, then shifted. That level is compared with another one. Persons differ in both.
 struct PlantedEffect {
     std::string factor;
     std::string level;
     std::string against;  // the other level
     std::string measure;
     double scale = 1.0;
-    double shift = 0.0;   // in the measure's unit
-    double spread = 0.0;  // standard deviation between persons: of the shift, or of the logarithm of the scale
+    double shift = 0.0;  // in the measure's unit
+    // Standard deviations between persons.
+    double log_scale_spread = 0.0;  // of the scale's logarithm
+    double shift_spread = 0.0;
 };
 
 /// From "FACTOR:LEVEL=DELTA~SPREAD": DELTA is "+0.3" or "-0.3", added, or "x1.2", multiplied; without "~SPREAD" it is

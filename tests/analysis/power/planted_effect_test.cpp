@@ -41,8 +41,10 @@ TEST(PlantedEffect, IsReadAsWritten) {
     const PlantedEffect spread = effectOf("method:b=c=-0.25~0.2");
     EXPECT_EQ(spread.level, "b=c");
     EXPECT_EQ(spread.shift, -0.25);
-    EXPECT_EQ(spread.spread, 0.2);
-    EXPECT_EQ(effectOf("size:1=x1.5~0.1").spread, 0.1);
+    EXPECT_EQ(spread.shift_spread, 0.2);
+    EXPECT_EQ(spread.log_scale_spread, 0.0);
+    EXPECT_EQ(effectOf("size:1=x1.5~0.1").log_scale_spread, 0.1);
+    EXPECT_EQ(effectOf("size:1=x1.5~0.1").shift_spread, 0.0);
     EXPECT_EQ(addedBy("method:b=c=-0.25~0.2"), -0.25);
     EXPECT_FALSE(addedBy("method:a=x1.5~0.1"));
     EXPECT_TRUE(saysSpread("method:a=+1~0"));
@@ -99,15 +101,15 @@ std::map<std::string, std::set<double>> givenTo(int people, const PlantedEffect&
         if (!after.attempts[i].condition.starts_with("d/")) continue;
         // Rounded to what the difference of two times of some seconds holds.
         given[after.attempts[i].participant_id].insert(
-            std::round(1e9 * (effect.scale != 1.0 ? std::log(is / was) : is - was)) / 1e9);
+            std::round(1e9 * (effect.log_scale_spread > 0.0 ? std::log(is / was) : is - was)) / 1e9);
     }
     return given;
 }
 
 TEST(PlantedEffect, DiffersBetweenPersonsByItsSpreadAndNotWithinThem) {
     // Truth: closed form: mean and standard deviation of 2000 normal draws, each within four standard errors.
-    for (const auto& [text, mean] :
-         {std::pair("method:d=+0.3~0.2", 0.3), std::pair("method:d=x1.5~0.2", std::log(1.5))}) {
+    for (const auto& [text, mean] : {std::pair("method:d=+0.3~0.2", 0.3), std::pair("method:d=x1.5~0.2", std::log(1.5)),
+                                     std::pair("method:d=x1~0.2", 0.0)}) {
         const auto given = givenTo(2000, effectOf(text), 5);
         ASSERT_EQ(given.size(), 2000u);
         double sum = 0.0, squares = 0.0;
