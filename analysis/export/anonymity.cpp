@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
-#include <set>
 #include <string_view>
 
 #include "analysis/export/columns.h"
@@ -152,7 +151,7 @@ void Anonymiser::tellInBands(Table& table, const Persons& persons) {
         Entry entry{table.file, "value", fmt::format("low end of its range of {}", band.width), band.item};
         for (auto& row : table.rows) {
             if (items->nameIn(row) != band.item) continue;
-            used_[band.item] = true;
+            used_.insert(band.item);
             const auto value = numberIn(row[items->value]);
             if (!persons.has(row) || !value) continue;
             row[items->value] = cell(band.width * std::floor(*value / band.width));

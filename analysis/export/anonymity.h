@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -58,7 +59,7 @@ private:
     Anonymity how_;
     Random random_;
     std::map<std::string, int> weeks_;  // by participant
-    std::map<std::string, bool> used_;  // items in bands
+    std::set<std::string> used_;        // items in bands
     std::vector<Entry> entries_;
 };
 

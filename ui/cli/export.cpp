@@ -40,6 +40,23 @@ Result<std::optional<exporter::Anonymity>> anonymityOf(const ExportArguments& op
     return std::optional(anonymity);
 }
 
+Result<exporter::ExportOptions> optionsOf(const ExportArguments& options, ProgressLine& progress) {
+    const auto anonymity = anonymityOf(options);
+    if (!anonymity) return anonymity.errors();
+    exporter::ExportOptions how;
+    how.samples = !options.no_samples;
+    how.psych_ds = options.format == "psych-ds";
+    how.anonymity = *anonymity;
+    how.group = options.group;
+    how.progress = [&progress](double share) { progress.show(fmt::format("exporting: {:.0f} %", 100.0 * share)); };
+    return how;
+}
+
+Result<store::StoreReader> openFor(const ExportArguments& options) {
+    return store::StoreReader::open(options.database,
+                                    options.no_samples ? store::Damaged::LeftOut : store::Damaged::LeftOutWithSamples);
+}
+
 void tellAnonymity(const ExportArguments& options) {
     if (options.anonymous)
         fmt::print(
@@ -50,19 +67,12 @@ void tellAnonymity(const ExportArguments& options) {
 }  // namespace
 
 int exportData(const ExportArguments& options) {
-    const auto anonymity = anonymityOf(options);
-    if (!anonymity) return fail(anonymity.errors());
-    const auto reader = store::StoreReader::open(
-        options.database, options.no_samples ? store::Damaged::LeftOut : store::Damaged::LeftOutWithSamples);
-    if (!reader) return fail(reader.errors());
     ProgressLine progress;
-    const auto report = exporter::exportAll(
-        *reader, options.out,
-        {.samples = !options.no_samples,
-         .psych_ds = options.format == "psych-ds",
-         .anonymity = *anonymity,
-         .group = options.group,
-         .progress = [&](double share) { progress.show(fmt::format("exporting: {:.0f} %", 100.0 * share)); }});
+    const auto how = optionsOf(options, progress);
+    if (!how) return fail(how.errors());
+    const auto reader = openFor(options);
+    if (!reader) return fail(reader.errors());
+    const auto report = exporter::exportAll(*reader, options.out, *how);
     if (!report) return fail(report.errors());
     progress.show("");
     noteExport(options, report->kept);
@@ -72,18 +82,12 @@ int exportData(const ExportArguments& options) {
 }
 
 int reportData(const ExportArguments& options) {
-    const auto anonymity = anonymityOf(options);
-    if (!anonymity) return fail(anonymity.errors());
-    const auto reader = store::StoreReader::open(
-        options.database, options.no_samples ? store::Damaged::LeftOut : store::Damaged::LeftOutWithSamples);
-    if (!reader) return fail(reader.errors());
     ProgressLine progress;
-    const auto outcome = report::writeReport(
-        *reader, options.out,
-        {.samples = !options.no_samples,
-         .anonymity = *anonymity,
-         .group = options.group,
-         .progress = [&](double share) { progress.show(fmt::format("exporting: {:.0f} %", 100.0 * share)); }});
+    const auto how = optionsOf(options, progress);
+    if (!how) return fail(how.errors());
+    const auto reader = openFor(options);
+    if (!reader) return fail(reader.errors());
+    const auto outcome = report::writeReport(*reader, options.out, *how);
     progress.show("");
     if (!outcome) return fail(outcome.errors());
     noteExport(options, outcome->tables.kept);

@@ -33,6 +33,12 @@ const ViewColumn kAttemptNumber{"attempt_no", "a.attempt_no", "Number of the att
 const ViewColumn kCondition{"condition", "c.condition", "Name of the condition: its levels joined by /"};
 const ViewColumn kProtocol{"protocol_sha256", "s.protocol_sha256", "SHA-256 of the protocol's text"};
 
+/// A column with texts that somebody typed.
+ViewColumn typed(ViewColumn column) {
+    column.typed = true;
+    return column;
+}
+
 Columns trialColumns() {
     return {
         {"attempt_id", "a.attempt_id", "Number of the attempt in this database, as in its tables"},
@@ -77,31 +83,24 @@ Columns trialColumns() {
          "How the attempt ended; crashed: the program ended first; running: it has not ended yet"},
         // Whoever is excluded counts nowhere; their rows stay as they are.
         {"valid", "(a.valid AND pa.status<>'excluded')", "1 if the attempt may be analysed"},
-        {"invalid_reason",
-         "CASE WHEN a.valid AND pa.status='excluded' THEN 'participant excluded' ELSE a.invalid_reason END",
-         "Why the attempt may not be analysed",
-         {},
-         {},
-         1,
-         true},
+        typed({"invalid_reason",
+               "CASE WHEN a.valid AND pa.status='excluded' THEN 'participant excluded' ELSE a.invalid_reason END",
+               "Why the attempt may not be analysed"}),
         {"counted",
          std::string("(t.phase='main' AND a.valid AND ") + kEnded + " AND " + countedSession() + ")",
          "1 if cells_long.csv and the wide tables count the attempt",
          {},
          "valid = 1, phase = main, outcome success, failure or timeout, and counted = 1 of the session in "
          "sessions.csv; in exports besides left out by no [[exclude]] of the protocol"},
-        {"not_counted_because",
-         std::string("CASE WHEN pa.status='excluded' THEN 'the participant is excluded' WHEN t.phase='adaptive' THEN "
-                     "'trial of a staircase: see thresholds.csv' WHEN t.phase='catch' THEN 'catch trial' WHEN "
-                     "t.phase<>'main' THEN t.phase WHEN NOT a.valid THEN 'not valid: ' || coalesce(a.invalid_reason, "
-                     "'no reason is stored') WHEN NOT ") +
-             kEnded + " THEN a.outcome WHEN NOT " + countedSession() +
-             " THEN 'a complete or later session of the participant counts' END",
-         "Why they do not count it; NA: they do",
-         {},
-         {},
-         1,
-         true},
+        typed({"not_counted_because",
+               std::string(
+                   "CASE WHEN pa.status='excluded' THEN 'the participant is excluded' WHEN t.phase='adaptive' THEN "
+                   "'trial of a staircase: see thresholds.csv' WHEN t.phase='catch' THEN 'catch trial' WHEN "
+                   "t.phase<>'main' THEN t.phase WHEN NOT a.valid THEN 'not valid: ' || coalesce(a.invalid_reason, "
+                   "'no reason is stored') WHEN NOT ") +
+                   kEnded + " THEN a.outcome WHEN NOT " + countedSession() +
+                   " THEN 'a complete or later session of the participant counts' END",
+               "Why they do not count it; NA: they do"}),
         {"feedback_given",
          "(SELECT coalesce(nullif(substr(CASE WHEN y.force_ticks>0 THEN '+kinesthetic' ELSE '' END || CASE WHEN "
          "y.visual_frames>0 THEN '+visual' ELSE '' END || CASE WHEN y.vibrotactile_ticks>0 THEN '+vibrotactile' ELSE "
@@ -273,7 +272,7 @@ Columns eventColumns() {
             {"attempt_no", "a.attempt_no", "Attempt that it belongs to"},
             {"source", "e.source", "Who reported it"},
             {"event", "e.event", "What happened"},
-            {"payload_json", "e.payload_json", "More about it, as JSON", {}, {}, 1, true}};
+            typed({"payload_json", "e.payload_json", "More about it, as JSON"})};
 }
 
 const char* const kFromEvents =
