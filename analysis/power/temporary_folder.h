@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "core/base/folder_lock.h"
+
+namespace passung::power {
+
+/// Gone with everything in it at the end, or with the next one if the program is killed.
+class TemporaryFolder {
+public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }  // empty: it could not be made
+
+private:
+    std::filesystem::path path_;
+    std::optional<FolderLock> lock_;
+};
+
+}  // namespace passung::power
