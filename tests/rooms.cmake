@@ -52,7 +52,7 @@ set(rooms
   "analysis/report     | core/base ${plan_rooms} study/store analysis/export analysis/stats"
   "study/feasible      | ${contact_rooms} core/path ${plan_rooms} analysis/truth"
   "study/run           | ${core_rooms} devices ${study_rooms} study/session study/store analysis/truth"
-  "analysis/power      | core/base ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
+  "analysis/power      | core/base ${study_rooms} study/session study/store study/run analysis/export analysis/report analysis/stats"
   "ui/presenter        | core/base ${model_rooms} core/loop ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
   "ui/sound            | core/base core/loop study/measures"
   "ui/controls         |"

@@ -14,7 +14,7 @@
 namespace passung::power {
 namespace {
 
-constexpr std::string_view kTitle = "# passung power, format 2";
+constexpr std::string_view kTitle = "# passung power, format 3";
 constexpr std::string_view kColumns = "run,n,mean_difference,sd_difference,statistic,p";
 
 /// Every key of the header with its field, in order.
@@ -27,6 +27,7 @@ void eachKey(Job& job, Visit visit) {
     visit("simulation", job.simulation);
     visit("participants", job.participants);
     visit("repeats", job.repeats);
+    visit("drop_out", job.drop_out);
     visit("measure", job.measure);
     visit("effect", job.effect);
     visit("against", job.against);

@@ -20,6 +20,7 @@ struct PowerJob {
     std::string simulation;  // "haptic" or "model"
     int participants = 0;    // of each virtual study
     int repeats = 0;         // virtual studies
+    double drop_out = 0.0;   // share of participants who leave before the end
     std::string measure;
     std::string effect;   // as readEffect takes it
     std::string against;  // level

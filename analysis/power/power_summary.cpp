@@ -26,7 +26,7 @@ PowerSummary summarise(const PowerResult& result) {
     const auto added = result.job.simulation == "model" ? addedBy(result.job.effect) : std::nullopt;
     const bool paired_t = result.job.test == "paired_t";
     std::vector<double> means;
-    double variances = 0.0;
+    double variances = 0.0, people = 0.0;
     std::size_t held = 0;
     for (const StudyTest& study : result.tests) {
         if (study.test.p < result.job.alpha) ++summary.significant;
@@ -35,6 +35,7 @@ PowerSummary summarise(const PowerResult& result) {
             continue;
         }
         means.push_back(study.test.mean);
+        people += static_cast<double>(study.test.n);
         variances += study.test.sd * study.test.sd;
         if (!paired_t) continue;
         const auto interval = stats::meanInterval(study.test.n, study.test.mean, study.test.sd, kConfidence);
@@ -52,8 +53,9 @@ PowerSummary summarise(const PowerResult& result) {
     summary.sd = std::sqrt(variances / tested);
     if (added && paired_t) summary.coverage = static_cast<double>(held) / tested;
     const double d = summary.difference / summary.sd;
-    if (paired_t && std::isfinite(d) && result.job.participants >= 2) {
-        summary.closed_form = stats::pairedPower(d, result.job.participants, result.job.alpha);
+    const double n = std::round(people / tested);
+    if (paired_t && std::isfinite(d) && n >= 2.0) {
+        summary.closed_form = stats::pairedPower(d, n, result.job.alpha);
         summary.size_for_80 = stats::pairedSize(d, kAskedPower, result.job.alpha);
     }
     return summary;
@@ -81,18 +83,23 @@ std::string summaryText(const PowerResult& result) {
     if (result.shard.of > 1)
         text += fmt::format("shard {} of {} alone, of {} studies in all\n", result.shard.index, result.shard.of,
                             job.repeats);
-    text += fmt::format("planted in {}: {}, compared with {} by {} on means of cells\n", job.measure, job.effect,
-                        job.against, job.test);
+    const bool survival = job.test == "survival";
+    text += fmt::format("planted in {}: {}, compared with {} by {} on {}\n", job.measure, job.effect, job.against,
+                        job.test, survival ? "trials" : "means of cells");
+    if (job.drop_out > 0.0)
+        text += fmt::format("of the participants {:.4g} % leave before the end\n", 100.0 * job.drop_out);
     text += testedText(result);
     if (addedBy(job.effect) != 0.0 && !saysSpread(job.effect))
         text +=
             "the effect is the same for everybody: where persons differ in it the power is lower; say DELTA~SPREAD\n";
-    text += fmt::format("significant at {}: {} of {}: power {:.4f}, 95 % interval {:.4f} to {:.4f}\n", job.alpha,
+    text += fmt::format("{} at {}: {} of {}: power {:.4f}, 95 % interval {:.4f} to {:.4f}\n",
+                        job.test == "equivalence" ? "shown to lie within the bounds" : "significant", job.alpha,
                         s.significant, s.studies, s.power, s.power_interval.low, s.power_interval.high);
     if (s.untested > 0) text += fmt::format("{} studies had too few values for a test\n", s.untested);
     if (s.untested == s.studies) return text;
     text += fmt::format(
-        "difference found: mean {:.4g}, 95 % interval {:.4g} to {:.4g}{}\n", s.difference, s.difference_interval.low,
+        "{} found: mean {:.4g}, 95 % interval {:.4g} to {:.4g}{}\n",
+        survival ? "logarithm of the ratio of hazards" : "difference", s.difference, s.difference_interval.low,
         s.difference_interval.high,
         std::isnan(s.sd) ? ""
                          : fmt::format("; a participant's deviates by {:.4g} (d = {:.3f})", s.sd, s.difference / s.sd));
@@ -102,7 +109,7 @@ std::string summaryText(const PowerResult& result) {
         text += fmt::format("closed form for normal differences of that d: power {:.4f}", s.closed_form);
         const bool found = !s.difference_interval.holds(0.0);
         if (found && std::isfinite(s.size_for_80))
-            text += fmt::format("; 80 % with {:.1f} participants", s.size_for_80);
+            text += fmt::format("; 80 % with {:.1f} tested persons", s.size_for_80);
         text += '\n';
     }
     return text + "Simulated participants show what design and analysis can find, never how people behave.\n";

@@ -21,8 +21,9 @@ struct PowerSummary {
     std::optional<double> coverage;  // share of studies whose interval of the mean difference holds what was added;
                                      // only where the simulation itself is alike in all conditions
     // Of paired_t alone:
-    double closed_form = 0.0;  // power with normal differences of that mean and sd
-    double size_for_80 = 0.0;  // participants for which that is 80 %
+    double closed_form =
+        0.0;  // power with normal differences of that mean and sd, of as many as were tested on average
+    double size_for_80 = 0.0;  // tested participants for which that is 80 %
 };
 /// @pre there is a test in the result
 PowerSummary summarise(const PowerResult& result);

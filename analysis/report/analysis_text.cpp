@@ -410,7 +410,7 @@ AnalysisText writeAnalysis(const StudyData& study) {
         if (std::find(written.packages.begin(), written.packages.end(), package) == written.packages.end())
             written.packages.push_back(package);
     };
-    for (const char* package : {"rmarkdown", "knitr", "jsonlite", "digest"}) need(package);
+    for (const char* package : {"pandoc", "rmarkdown", "knitr", "jsonlite", "digest"}) need(package);
     std::vector<Section> sections;
     Names outcomes;
     bool reads_thresholds = false;

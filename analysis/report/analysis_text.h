@@ -10,7 +10,7 @@ namespace passung::report {
 /// A text of R Markdown, and what it needs.
 struct AnalysisText {
     std::string text = {};
-    std::vector<std::string> packages = {};  // of R
+    std::vector<std::string> packages = {};  // of R, and pandoc
     std::size_t analyses = 0;
 };
 

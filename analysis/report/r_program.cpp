@@ -79,10 +79,13 @@ std::optional<Ended> runR(const std::filesystem::path& folder, const std::string
     return ended;
 }
 
-std::string debianName(std::string package) {
-    std::transform(package.begin(), package.end(), package.begin(),
+constexpr const char* kPandoc = "pandoc";
+
+std::string debianName(std::string needed) {
+    if (needed == kPandoc) return needed;
+    std::transform(needed.begin(), needed.end(), needed.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return "r-cran-" + package;
+    return "r-cran-" + needed;
 }
 
 std::vector<std::string> linesOf(const std::string& text) {
@@ -95,22 +98,18 @@ std::vector<std::string> linesOf(const std::string& text) {
 
 }  // namespace
 
-std::vector<std::string> missingPrograms(const std::vector<std::string>& packages) {
+std::vector<std::string> missingPrograms(const std::vector<std::string>& needed) {
     std::string names;
-    for (const std::string& package : packages) names += (names.empty() ? "\"" : ", \"") + package + "\"";
+    for (const std::string& name : needed) names += (names.empty() ? "\"" : ", \"") + name + "\"";
     const auto ended = runR(".",
-                            "cat(c(setdiff(c(" + names +
-                                "), rownames(installed.packages())), if (Sys.which(\"pandoc\") == \"\") \"pandoc\"), "
-                                "sep = \"\\n\")",
+                            "cat(setdiff(c(" + names +
+                                "), c(rownames(installed.packages()), if (Sys.which(\"pandoc\") != \"\") "
+                                "\"pandoc\")), sep = \"\\n\")",
                             STDOUT_FILENO);
+    const bool has_r = ended && ended->status == 0;
     std::vector<std::string> missing;
-    if (!ended || ended->status != 0) {
-        missing = {"r-base-core", "pandoc"};
-        std::transform(packages.begin(), packages.end(), std::back_inserter(missing), debianName);
-        return missing;
-    }
-    for (const std::string& name : linesOf(ended->output))
-        missing.push_back(name == "pandoc" ? name : debianName(name));
+    if (!has_r) missing.emplace_back("r-base-core");
+    for (const std::string& name : has_r ? linesOf(ended->output) : needed) missing.push_back(debianName(name));
     return missing;
 }
 
@@ -121,16 +120,19 @@ std::string installCommand(const std::vector<std::string>& programs) {
     return command;
 }
 
-Rendered render(const std::filesystem::path& folder, const std::string& text, const std::string& page) {
-    const auto ended = runR(folder, "rmarkdown::render(\"" + text + "\", output_file = \"" + page + "\", quiet = TRUE)",
-                            STDERR_FILENO);
+Evaluated evaluate(const std::filesystem::path& folder, const std::string& expression) {
+    const auto ended = runR(folder, expression, STDERR_FILENO);
     if (!ended) return {.failed = "R does not start", .said = {}};
-    Rendered rendered{.failed = {}, .said = linesOf(ended->output)};
-    if (ended->status == 0) return rendered;
-    for (const std::string& line : rendered.said) rendered.failed += (rendered.failed.empty() ? "" : " ") + line;
-    if (rendered.failed.empty()) rendered.failed = "R ended without a word";
-    rendered.said.clear();
-    return rendered;
+    Evaluated evaluated{.failed = {}, .said = linesOf(ended->output)};
+    if (ended->status == 0) return evaluated;
+    for (const std::string& line : evaluated.said) evaluated.failed += (evaluated.failed.empty() ? "" : " ") + line;
+    if (evaluated.failed.empty()) evaluated.failed = "R ended without a word";
+    evaluated.said.clear();
+    return evaluated;
+}
+
+Evaluated render(const std::filesystem::path& folder, const std::string& text, const std::string& page) {
+    return evaluate(folder, "rmarkdown::render(\"" + text + "\", output_file = \"" + page + "\", quiet = TRUE)");
 }
 
 }  // namespace passung::report

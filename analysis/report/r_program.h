@@ -6,18 +6,22 @@
 
 namespace passung::report {
 
-/// Those of R, pandoc and R's `packages` that are not here, as Debian names them.
-std::vector<std::string> missingPrograms(const std::vector<std::string>& packages);
+/// Those of R and of what is needed, R's packages or pandoc, that are not here, as Debian names them.
+std::vector<std::string> missingPrograms(const std::vector<std::string>& needed);
 
 /// The line that installs them; empty for none.
 std::string installCommand(const std::vector<std::string>& programs);
 
-struct Rendered {
-    std::string failed;             // R's last words; empty: it made the page
-    std::vector<std::string> said;  // its other lines
+/// What came of an expression of R.
+struct Evaluated {
+    std::string failed;             // R's last words; empty: it came to its end
+    std::vector<std::string> said;  // its other lines of warnings and messages
 };
 
+/// Lets R evaluate an expression in `folder`.
+Evaluated evaluate(const std::filesystem::path& folder, const std::string& expression);
+
 /// Lets R make `page` of the R Markdown file `text`, both in `folder`.
-Rendered render(const std::filesystem::path& folder, const std::string& text, const std::string& page);
+Evaluated render(const std::filesystem::path& folder, const std::string& text, const std::string& page);
 
 }  // namespace passung::report

@@ -40,10 +40,10 @@ Result<ReportOutcome> writeReport(const store::StoreReader& reader, const std::s
     more.in_folder = [&](const std::filesystem::path& folder) -> std::vector<std::string> {
         outcome.missing = installCommand(missingPrograms(text.packages));
         if (!outcome.missing.empty()) return {};
-        const Rendered rendered = render(folder, kAnalysis, "report.html");
-        outcome.said = rendered.said;
-        outcome.failed = rendered.failed;
-        if (!rendered.failed.empty()) return {};
+        const Evaluated page = render(folder, kAnalysis, "report.html");
+        outcome.said = page.said;
+        outcome.failed = page.failed;
+        if (!page.failed.empty()) return {};
         return {"report.html", "results.json"};
     };
     auto tables = exporter::exportAll(reader, out_dir, more);

@@ -326,22 +326,27 @@ private:
         auto* protocol = sub->add_option("PROTOCOL", power_.protocol, "study file (.toml)");
         auto* effect = sub->add_option(
             "--effect", power_.effect,
-            "effect FACTOR:LEVEL=DELTA~SPREAD, planted in every virtual study at one level of a factor. DELTA is +0.3 "
-            "or "
-            "-0.3 (added, in the measure's unit) or x1.2 (multiplied); +0 gives the rate of false positives. ~SPREAD: "
-            "standard deviation of the effect between persons, of the logarithm where it is multiplied; without it "
-            "everybody has the same effect, and the power is too high");
+            "effect FACTOR:LEVEL=DELTA~SPREAD, planted in every virtual study at one level of a factor, or "
+            "FACTOR:LEVEL*FACTOR:LEVEL=DELTA~SPREAD, an interaction, where both are met. DELTA is +0.3 or -0.3 (added, "
+            "in the measure's unit) or x1.2 (multiplied); +0 gives the rate of false positives. ~SPREAD: standard "
+            "deviation of the effect between persons, of the logarithm where it is multiplied; without it everybody "
+            "has the same effect, and the power is too high. A time that comes to lie above the time-out times out");
         sub->add_option("--against", power_.against, "level to compare with; default: the factor's first other one");
         sub->add_option("--measure", power_.measure, "measure of a trial; default time_s");
         sub->add_option("--test", power_.test,
                         "test of a within factor: paired_t, wilcoxon, rm_anova, friedman, mixed_anova; of a between "
-                        "factor: welch_t, mann_whitney, mixed_anova. Default: the protocol's analysis of that measure "
-                        "and factor, else paired_t or welch_t")
+                        "factor: welch_t, mann_whitney, mixed_anova; of either: lmm, survival, equivalence; of an "
+                        "interaction: rm_anova, mixed_anova, lmm. What either or an interaction has is computed by R. "
+                        "Default: the protocol's "
+                        "analysis of that measure and factor, else paired_t or welch_t, rm_anova or mixed_anova")
             ->check(CLI::IsMember(passung::power::testNames()));
         sub->add_option("--participants", power_.participants,
                         "participants of a virtual study; default: the protocol's")
             ->check(wholeIntFrom(2));
         sub->add_option("--repeats", power_.repeats, "number of virtual studies; default 200")->check(wholeIntFrom(1));
+        sub->add_option("--drop-out", power_.drop_out,
+                        "share of participants who leave before the end, each before any trial alike; default 0")
+            ->check(above0Below(1.0));
         sub->add_option(
                "--simulation", power_.simulation,
                "kind of virtual study. haptic (default): every trial, tick by tick, through database and means of the "

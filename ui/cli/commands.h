@@ -155,13 +155,14 @@ int replay(const ReplayArguments& options);
 
 struct PowerArguments {
     std::string protocol;  // empty with merge
-    std::string effect;    // FACTOR:LEVEL=DELTA
+    std::string effect;    // as readEffect takes it
     std::string against;   // level; empty: the factor's first other one
     std::string measure = "time_s";
     std::string test;                   // empty: as the protocol plans
     std::string simulation = "haptic";  // or "model"
     int participants = 0;               // 0: as many as the protocol plans
     int repeats = 200;
+    double drop_out = 0.0;  // share of participants who leave before the end
     double alpha = 0.05;
     int shard = 1, shards = 1;
     std::optional<std::uint64_t> seed;

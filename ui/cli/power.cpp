@@ -85,6 +85,7 @@ int power(const PowerArguments& options) {
     job.simulation = options.simulation;
     job.participants = options.participants > 0 ? options.participants : plan->participants;
     job.repeats = options.repeats;
+    job.drop_out = options.drop_out;
     job.effect = options.effect;
     job.alpha = options.alpha;
     const power::Shard shard{options.shard, options.shards};

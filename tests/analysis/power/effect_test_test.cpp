@@ -26,6 +26,13 @@ PlantedEffect effectOf(const std::string& text, const std::string& against = "",
     return *effect;
 }
 
+EffectTest testOf(const PlantedEffect& effect, const std::string& test, const plan::StudyPlan& plan,
+                  const exporter::StudyData& study) {
+    const auto tests = testEffect(effect, test, plan, {&study, 1});
+    if (!tests) throw std::runtime_error(toString(tests.errors().front()));
+    return tests->front();
+}
+
 /// The small plan with its second factor between participants.
 plan::StudyPlan groupedPlan() {
     plan::StudyPlan plan = smallPlan();
@@ -61,12 +68,12 @@ TEST(TestEffect, ComparesMeansOfCellMeans) {
     append(study, "S002", {1, 1, 9, 9, 1, 5});  // a 1, d 3
     append(study, "S003", {2, 4, 9, 9, 6, 8});  // a 3, d 7
     append(study, "S004", {2, 4, 9, 9, std::nan(""), 8});
-    const EffectTest test = testEffect(effectOf("method:d=+0"), "paired_t", smallPlan(), study);
+    const EffectTest test = testOf(effectOf("method:d=+0"), "paired_t", smallPlan(), study);
     EXPECT_EQ(test.n, 3u);
     EXPECT_NEAR(test.mean, 8.0 / 3.0, 1e-12);
     EXPECT_NEAR(test.sd, std::sqrt(4.0 / 3.0), 1e-12);
     EXPECT_NEAR(test.statistic, 4.0, 1e-12);
-    EXPECT_NEAR(testEffect(effectOf("method:a=+0", "d"), "paired_t", smallPlan(), study).mean, -8.0 / 3.0, 1e-12);
+    EXPECT_NEAR(testOf(effectOf("method:a=+0", "d"), "paired_t", smallPlan(), study).mean, -8.0 / 3.0, 1e-12);
 }
 
 TEST(TestEffect, TakesEverybodyWhereNobodyMeetsEveryCondition) {
@@ -75,7 +82,7 @@ TEST(TestEffect, TakesEverybodyWhereNobodyMeetsEveryCondition) {
     plan.factors[1].kind = plan::FactorKind::Nuisance;
     const exporter::StudyData study = *modelStudy(plan, 6);
     EXPECT_EQ(study.attempts.size(), 6u * 7u);
-    EXPECT_EQ(testEffect(effectOf("method:d=+0"), "paired_t", plan, study).n, 6u);
+    EXPECT_EQ(testOf(effectOf("method:d=+0"), "paired_t", plan, study).n, 6u);
 }
 
 /// Every participant's mean over the attempts that count, by method and by size.
@@ -109,7 +116,7 @@ TEST(TestEffect, GroupsAreComparedByTheirPeoplesMeans) {
     const auto& one = groups.at("1");
     const auto& two = groups.at("2");
     const auto expect = [&](const PlantedEffect& effect, const char* test, const stats::TestResult& expected) {
-        const EffectTest found = testEffect(effect, test, plan, study);
+        const EffectTest found = testOf(effect, test, plan, study);
         EXPECT_EQ(found.n, 12u) << test;
         EXPECT_NEAR(found.p, expected.p, 1e-9) << test;
         EXPECT_NEAR(found.statistic, expected.statistic, 1e-9 * std::abs(expected.statistic)) << test;
@@ -126,8 +133,8 @@ TEST(TestEffect, GroupsAreComparedByTheirPeoplesMeans) {
     std::vector<double> differences;
     for (const auto& row : all) differences.push_back(row[2] - row[0]);
     expect(method, "wilcoxon", stats::wilcoxonSignedRank(differences));
-    EXPECT_TRUE(std::isnan(testEffect(size, "welch_t", plan, study).sd));
-    EXPECT_NEAR(testEffect(size, "welch_t", plan, study).mean, exporter::meanOf(one) - exporter::meanOf(two), 1e-9);
+    EXPECT_TRUE(std::isnan(testOf(size, "welch_t", plan, study).sd));
+    EXPECT_NEAR(testOf(size, "welch_t", plan, study).mean, exporter::meanOf(one) - exporter::meanOf(two), 1e-9);
 }
 
 TEST(ChooseTest, IsThePlannedOneOrWhatSuitsTheFactor) {
@@ -149,9 +156,15 @@ TEST(ChooseTest, IsThePlannedOneOrWhatSuitsTheFactor) {
     EXPECT_EQ(message("welch_t", method),
               "error: --test: welch_t: is for a between factor, and method is a within one");
     EXPECT_EQ(message("rm_anova", size), "error: --test: rm_anova: is for a within factor, and size is a between one");
-    plan.analyses = {{kTime, {"method"}, "lmm"}};
+    plan.analyses = {{kTime, {"method"}, "ordinal"}};
     EXPECT_EQ(message("", method),
-              "error: --test: lmm: a mixed model is not fitted here; the protocol plans it: name another with --test");
+              "error: --test: ordinal: is not computed here; the protocol plans it: name another with --test");
+    EXPECT_EQ(message("survival", method), "error: --test: survival: is of time_s");
+    EXPECT_NE(message("equivalence", method).find("takes its bounds from the protocol"), std::string::npos);
+    const PlantedEffect both = effectOf("method:d*size:1=+0", "", plan);
+    EXPECT_EQ(message("paired_t", both), "error: --test: paired_t: does not test an interaction");
+    EXPECT_EQ(message("rm_anova", both), "error: --test: rm_anova: is for two within factors");
+    EXPECT_EQ(message("mixed_anova", effectOf("method:d*size:1=+0")), "mixed_anova");
 }
 
 }  // namespace

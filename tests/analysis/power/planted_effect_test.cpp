@@ -25,21 +25,22 @@ PlantedEffect effectOf(const std::string& text, const std::string& against = "")
 TEST(PlantedEffect, IsReadAsWritten) {
     // Truth: invariant
     const PlantedEffect added = effectOf("method:b=c=-0.25");
-    EXPECT_EQ(added.factor, "method");
-    EXPECT_EQ(added.level, "b=c");
-    EXPECT_EQ(added.against, "a");
+    ASSERT_EQ(added.at.size(), 1u);
+    EXPECT_EQ(added.at[0].factor, "method");
+    EXPECT_EQ(added.at[0].level, "b=c");
+    EXPECT_EQ(added.at[0].against, "a");
     EXPECT_EQ(added.scale, 1.0);
     EXPECT_EQ(added.shift, -0.25);
     const PlantedEffect scaled = effectOf("size:1=x1.5");
-    EXPECT_EQ(scaled.against, "2");
+    EXPECT_EQ(scaled.at[0].against, "2");
     EXPECT_EQ(scaled.scale, 1.5);
     EXPECT_EQ(scaled.shift, 0.0);
-    EXPECT_EQ(effectOf("method:a=+0", "d").against, "d");
+    EXPECT_EQ(effectOf("method:a=+0", "d").at[0].against, "d");
     EXPECT_EQ(addedBy("method:b=c=-0.25"), -0.25);
     EXPECT_EQ(addedBy("method:a=+0"), 0.0);
     EXPECT_FALSE(addedBy("method:a=x1.5"));
     const PlantedEffect spread = effectOf("method:b=c=-0.25~0.2");
-    EXPECT_EQ(spread.level, "b=c");
+    EXPECT_EQ(spread.at[0].level, "b=c");
     EXPECT_EQ(spread.shift, -0.25);
     EXPECT_EQ(spread.shift_spread, 0.2);
     EXPECT_EQ(spread.log_scale_spread, 0.0);
@@ -49,6 +50,55 @@ TEST(PlantedEffect, IsReadAsWritten) {
     EXPECT_FALSE(addedBy("method:a=x1.5~0.1"));
     EXPECT_TRUE(saysSpread("method:a=+1~0"));
     EXPECT_FALSE(saysSpread("a~b:a=+1"));
+    const PlantedEffect interaction = effectOf("method:b=c*size:1=+0.2~0.1", "d");
+    ASSERT_EQ(interaction.at.size(), 2u);
+    EXPECT_EQ(interaction.at[0].level, "b=c");
+    EXPECT_EQ(interaction.at[0].against, "d");
+    EXPECT_EQ(interaction.at[1].level, "1");
+    EXPECT_EQ(interaction.at[1].against, "2");
+    EXPECT_EQ(interaction.shift, 0.2);
+}
+
+TEST(PlantedEffect, OfAnInteractionIsWhereBothLevelsMeet) {
+    // Truth: closed form
+    const exporter::StudyData before = *modelStudy(smallPlan(), 2);
+    exporter::StudyData after = before;
+    plant(effectOf("method:d*size:2=+1"), 1, after);
+    for (std::size_t i = 0; i < after.attempts.size(); ++i)
+        EXPECT_DOUBLE_EQ(after.attempts[i].measures.at(kTime) - before.attempts[i].measures.at(kTime),
+                         after.attempts[i].condition == "d/2" ? 1.0 : 0.0);
+}
+
+TEST(PlantedEffect, LetsTimesAboveTheTimeOutTimeOut) {
+    // Truth: closed form: what is above 4 s after the effect has no completion time, and 4 s as its censored one; what
+    // had timed out before stays so, shorter though the effect makes times.
+    plan::StudyPlan plan = smallPlan();
+    plan.measures.push_back("time_s");
+    for (plan::Condition& condition : plan.conditions) condition.task.timeout = 4.0;
+    const auto planted = [&](const char* text) {
+        const auto effect = readEffect(text, "", "time_s", plan);
+        exporter::StudyData study = *modelStudy(plan, 30);
+        plant(*effect, 1, study);
+        return study;
+    };
+    const exporter::StudyData before = *modelStudy(plan, 30), after = planted("method:d=+0.5");
+    int cut = 0;
+    for (std::size_t i = 0; i < after.attempts.size(); ++i) {
+        const auto& attempt = after.attempts[i];
+        const double time =
+            before.attempts[i].measures.at("time_s") + (attempt.condition.starts_with("d/") ? 0.5 : 0.0);
+        EXPECT_DOUBLE_EQ(attempt.measures.at("time_s"), std::min(time, 4.0));
+        EXPECT_EQ(attempt.outcome, time > 4.0 ? "timeout" : "success");
+        EXPECT_EQ(attempt.measures.count(kTime), time > 4.0 ? 0u : 1u);
+        cut += time > 4.0 ? 1 : 0;
+    }
+    EXPECT_GT(cut, 20);
+    exporter::StudyData again = after;
+    plant(*readEffect("method:d=x0.5", "", "time_s", plan), 1, again);
+    for (std::size_t i = 0; i < again.attempts.size(); ++i) {
+        if (after.attempts[i].outcome != "timeout") continue;
+        EXPECT_EQ(again.attempts[i].measures.at("time_s"), 4.0);
+    }
 }
 
 TEST(PlantedEffect, NamesWhatThePlanDoesNotHave) {
@@ -63,6 +113,8 @@ TEST(PlantedEffect, NamesWhatThePlanDoesNotHave) {
     EXPECT_EQ(message("method:e=+1"), "error: --effect: e: must be a level of method: a, b=c, d");
     EXPECT_EQ(message("method:a=+1", "e"), "error: --against: e: must be a level of method: a, b=c, d");
     EXPECT_EQ(message("method:a=+1", "a"), "error: --against: a: must be another level than the effect's");
+    EXPECT_EQ(message("method:a*size:3=+1"), "error: --effect: a*size:3: must be a level of method: a, b=c, d");
+    EXPECT_NE(message("method:a*method:d=+1").find("an interaction must be of two factors"), std::string::npos);
     EXPECT_EQ(message("method:a=+1", "", "tip"),
               "error: --measure: tip: must be a measure of the protocol: completion_time_s, peak_force_N");
     for (const char* delta : {"1", "x0", "x-2", "+", "x", "+inf", "+1s", ""})

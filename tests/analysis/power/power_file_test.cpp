@@ -70,16 +70,16 @@ TEST(PowerFile, ReadsBackWhatItWrote) {
 TEST(PowerFile, SaysWhereAFileIsWrong) {
     // Truth: invariant; each planted fault with its line
     const std::string text = powerText(result(3));
-    EXPECT_EQ(errorOf("nonsense"), "p.csv:1:1: error: nonsense: must be \"# passung power, format 2\"");
+    EXPECT_EQ(errorOf("nonsense"), "p.csv:1:1: error: nonsense: must be \"# passung power, format 3\"");
     EXPECT_EQ(errorOf(replaced(text, "# seed = 1", "# seed = x1")),
               "p.csv:5:1: error: seed: x18446744073709551615: must be a number of its kind");
     EXPECT_EQ(errorOf(replaced(text, "# repeats", "# repeat")),
               "p.csv:8:1: error: repeats: # repeat = 3: must stand here");
     EXPECT_EQ(errorOf(replaced(text, "shard = 1/1", "shard = 2/1")),
-              "p.csv:14:1: error: shard: 2/1: must be i/n with 1 ≤ i ≤ n");
-    EXPECT_NE(errorOf(replaced(text, "\n1,12", "\n2,12")).find("p.csv:17:1: error: run:"), std::string::npos);
-    EXPECT_NE(errorOf(text.substr(0, text.size() - 8)).find("p.csv:18:1: error: run:"), std::string::npos) << "torn";
-    EXPECT_NE(errorOf(text + "3,12,1,1,1,1\n").find("p.csv:19:1: error:"), std::string::npos);
+              "p.csv:15:1: error: shard: 2/1: must be i/n with 1 ≤ i ≤ n");
+    EXPECT_NE(errorOf(replaced(text, "\n1,12", "\n2,12")).find("p.csv:18:1: error: run:"), std::string::npos);
+    EXPECT_NE(errorOf(text.substr(0, text.size() - 8)).find("p.csv:19:1: error: run:"), std::string::npos) << "torn";
+    EXPECT_NE(errorOf(text + "3,12,1,1,1,1\n").find("p.csv:20:1: error:"), std::string::npos);
 }
 
 TEST(PowerFile, ShardsMergeToTheUnshardedBytesInAnyOrder) {

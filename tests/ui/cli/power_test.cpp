@@ -9,6 +9,7 @@
 #include "core/base/folder_lock.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/ui/cli/program.h"
+#include "tests/ui/cli/r_scripts.h"
 #include "tests/ui/cli/small_study.h"
 
 namespace passung::test {
@@ -113,9 +114,10 @@ TEST_F(Power, WrongUsageIsTwoAndWhatTheStudyLacksIsOne) {
     const Ended measure = model({"--measure", "peak_force_N"});
     EXPECT_EQ(measure.exit_code, 1);
     EXPECT_EQ(measure.err, "error: --measure: peak_force_N: the model has completion_time_s, time_s only\n");
-    const Ended mixed = model({"--test", "lmm"});
-    EXPECT_EQ(mixed.exit_code, 1);
-    EXPECT_EQ(mixed.err, "error: --test: lmm: a mixed model is not fitted here\n");
+    const Ended bounds = model({"--test", "equivalence"});
+    EXPECT_EQ(bounds.exit_code, 1);
+    EXPECT_NE(bounds.err.find("takes its bounds from the protocol"), std::string::npos) << bounds.err;
+    EXPECT_EQ(model({"--drop-out", "1.5"}).exit_code, 2);
     EXPECT_EQ(model({"--test", "anova"}).exit_code, 2);
     EXPECT_FALSE(fs::exists(folder_ / "s.csv"));
 }
@@ -127,6 +129,31 @@ TEST_F(Power, TheTestIsTheOneThatTheProtocolPlans) {
     writeText(folder_ / "fair.toml", study);
     EXPECT_NE(model({}).out.find("compared with none by wilcoxon"), std::string::npos);
     EXPECT_NE(model({"--test", "rm_anova"}).out.find("compared with none by rm_anova"), std::string::npos);
+}
+
+TEST_F(Power, AModelOfRIsFittedOrTheLineThatInstallsItIsNamed) {
+    // Truth: invariant: bytes do not hang on how many studies R gets at once.
+    if (!hasReportPackages()) GTEST_SKIP() << kNoReportPackages;
+    const Ended whole = model({"--test", "lmm", "--drop-out", "0.3", "--participants", "16", "--out", "whole.csv"});
+    ASSERT_EQ(whole.exit_code, 0) << whole.err;
+    EXPECT_NE(whole.out.find("30 % leave before the end"), std::string::npos) << whole.out;
+    EXPECT_NE(whole.out.find(" to 16 persons"), std::string::npos) << whole.out;
+    Words merge = {"--merge"};
+    for (const std::string i : {"1", "2"}) {
+        ASSERT_EQ(model({"--test", "lmm", "--drop-out", "0.3", "--participants", "16", "--shard", i + "/2", "--out",
+                         "s" + i + ".csv"})
+                      .exit_code,
+                  0);
+        merge.push_back("s" + i + ".csv");
+    }
+    merge.insert(merge.end(), {"--out", "merged.csv"});
+    ASSERT_EQ(power(merge).exit_code, 0);
+    EXPECT_EQ(readText(folder_ / "merged.csv"), readText(folder_ / "whole.csv"));
+    const WithoutPrograms alone;
+    const Ended without = model({"--test", "lmm"});
+    EXPECT_EQ(without.exit_code, 1);
+    EXPECT_EQ(without.err,
+              "error: --test: lmm: is computed by R, which lacks it here: apt install r-base-core r-cran-lmertest\n");
 }
 
 TEST_F(Power, AVirtualStudyIsARunAndItsExportWithTheEffectOnTop) {
