@@ -94,7 +94,7 @@ public:
                 for (const StudyFactor& factor : study_.factors) add(factorSql(factor), factorColumn(factor, view));
             if (column.name == view.measures_before)
                 for (const std::string& measure : study_.measures) add(measureSql(measure), measure);
-            add(column.sql, column.name);
+            add(column.in_view.empty() ? column.sql : column.in_view, column.name);
         }
         return withMark(view.name, view.with + "SELECT " + columns + " " + view.from);
     }

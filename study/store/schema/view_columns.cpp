@@ -1,6 +1,7 @@
 #include "study/store/schema/view_columns.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/assert.h"
 
@@ -13,6 +14,54 @@ using Columns = std::vector<ViewColumn>;
 const char* const kEnded = "a.outcome IN('success','failure','timeout')";
 const char* const kTrialStart =
     "(SELECT min(e.t_ns) FROM event e WHERE e.attempt_id=a.attempt_id AND e.event='trial_started')";
+
+const char* const kNewestForm =
+    "r.run_id=(SELECT max(o.run_id) FROM questionnaire_run o JOIN questionnaire k USING(questionnaire_sha256) WHERE "
+    "o.session_id=r.session_id AND k.key=q.key AND o.moment=r.moment AND o.block_index IS r.block_index AND o.trial_id "
+    "IS r.trial_id AND o.condition_id IS r.condition_id)";
+
+/// What the protocols' rules on recorded values leave out, as applyRules() of analysis/export/data_rules.h does: rows
+/// of trial_rule and person_rule, each with the text of the first rule that is broken.
+std::string ruleParts() {
+    return std::string(
+               "rule AS MATERIALIZED (SELECT p.protocol_sha256, x.key + 1 number, json_extract(x.value, "
+               "'$.data')='participants' of_people, json_extract(x.value, '$.value') value, json_extract(x.value, "
+               "'$.below') below, json_extract(x.value, '$.above') above, 'rule ' || (x.key + 1) || ': ' || "
+               "json_extract(x.value, '$.value') || coalesce(' below ' || (x.value -> '$.below'), '') || coalesce(CASE "
+               "WHEN json_extract(x.value, '$.below') IS NULL THEN '' ELSE ' or' END || ' above ' || (x.value -> "
+               "'$.above'), '') || coalesce(' (' || json_extract(x.value, '$.reason') || ')', '') told FROM "
+               "protocol_version p, json_each(CASE WHEN json_valid(p.expanded_json) THEN p.expanded_json ELSE '{}' "
+               "END, "
+               "'$.data_rules') x), trial_rule AS MATERIALIZED (SELECT a.attempt_id, min(x.number), x.told FROM rule x "
+               "JOIN session s USING(protocol_sha256) JOIN trial_plan t USING(session_id) JOIN attempt a "
+               "USING(trial_id) JOIN attempt_measure z ON z.attempt_id=a.attempt_id AND z.measure=x.value WHERE NOT "
+               "x.of_people AND t.phase='main' AND a.valid AND ") +
+           kEnded +
+           " AND (z.value_num<x.below OR z.value_num>x.above) GROUP BY a.attempt_id), of_person AS (SELECT x.number, "
+           "s.protocol_sha256, s.participant_id, z.value_num value FROM rule x JOIN session s USING(protocol_sha256) "
+           "JOIN participant pa USING(participant_id) JOIN trial_plan t USING(session_id) JOIN attempt a "
+           "USING(trial_id) JOIN attempt_measure z ON z.attempt_id=a.attempt_id AND z.measure=x.value WHERE "
+           "x.of_people "
+           "AND t.phase='main' AND a.valid AND " +
+           kEnded + " AND " + countedSession() +
+           " AND a.attempt_id NOT IN (SELECT attempt_id FROM trial_rule) UNION ALL SELECT x.number, s.protocol_sha256, "
+           "s.participant_id, z.value FROM rule x JOIN session s USING(protocol_sha256) JOIN participant pa "
+           "USING(participant_id) JOIN questionnaire_run r USING(session_id) JOIN questionnaire q "
+           "USING(questionnaire_sha256) JOIN score z USING(run_id) WHERE x.of_people AND q.key || '.' || "
+           "z.scale=x.value AND " +
+           countedSession() + " AND " + kNewestForm +
+           "), person_rule AS MATERIALIZED (SELECT m.protocol_sha256, m.participant_id, min(m.number), x.told FROM "
+           "(SELECT number, protocol_sha256, participant_id, avg(value) mean FROM of_person GROUP BY 1, 2, 3) m JOIN "
+           "rule x USING(protocol_sha256, number) WHERE m.mean<x.below OR m.mean>x.above GROUP BY 1, 2) ";
+}
+
+/// Of a row of `session s`, beside ruleParts(): whether its person is left out by no rule.
+const char* const kNotLeftOut =
+    "NOT EXISTS(SELECT 1 FROM person_rule x WHERE x.protocol_sha256=s.protocol_sha256 AND "
+    "x.participant_id=s.participant_id)";
+
+/// And of its `participant pa`: whether means are taken over it.
+std::string takenSession() { return "(" + countedSession() + " AND " + kNotLeftOut + ")"; }
 
 const ViewColumn kParticipant{"participant_id", "s.participant_id", "Code of the participant"};
 const ViewColumn kKind{"kind", "pa.kind", "Real person, pilot or simulated participant"};
@@ -36,6 +85,13 @@ const ViewColumn kProtocol{"protocol_sha256", "s.protocol_sha256", "SHA-256 of t
 /// A column with texts that somebody typed.
 ViewColumn typed(ViewColumn column) {
     column.typed = true;
+    return column;
+}
+
+/// A column whose SQL is another one in the view: `sql`, with the column's own at {}.
+ViewColumn inView(ViewColumn column, std::string sql) {
+    column.in_view = std::move(sql);
+    column.in_view.replace(column.in_view.find("{}"), 2, "(" + column.sql + ")");
     return column;
 }
 
@@ -86,21 +142,25 @@ Columns trialColumns() {
         typed({"invalid_reason",
                "CASE WHEN a.valid AND pa.status='excluded' THEN 'participant excluded' ELSE a.invalid_reason END",
                "Why the attempt may not be analysed"}),
-        {"counted",
-         std::string("(t.phase='main' AND a.valid AND ") + kEnded + " AND " + countedSession() + ")",
-         "1 if cells_long.csv and the wide tables count the attempt",
-         {},
-         "valid = 1, phase = main, outcome success, failure or timeout, and counted = 1 of the session in "
-         "sessions.csv; in exports besides left out by no [[exclude]] of the protocol"},
-        typed({"not_counted_because",
-               std::string(
-                   "CASE WHEN pa.status='excluded' THEN 'the participant is excluded' WHEN t.phase='adaptive' THEN "
-                   "'trial of a staircase: see thresholds.csv' WHEN t.phase='catch' THEN 'catch trial' WHEN "
-                   "t.phase<>'main' THEN t.phase WHEN NOT a.valid THEN 'not valid: ' || coalesce(a.invalid_reason, "
-                   "'no reason is stored') WHEN NOT ") +
-                   kEnded + " THEN a.outcome WHEN NOT " + countedSession() +
-                   " THEN 'a complete or later session of the participant counts' END",
-               "Why they do not count it; NA: they do"}),
+        inView({"counted",
+                std::string("(t.phase='main' AND a.valid AND ") + kEnded + " AND " + countedSession() + ")",
+                "1 if cells_long.csv and the wide tables count the attempt",
+                {},
+                "valid = 1, phase = main, outcome success, failure or timeout, counted = 1 of the session in "
+                "sessions.csv, "
+                "and left out by no [[exclude]] of the protocol"},
+               "tr.told IS NULL AND pr.told IS NULL AND {}"),
+        inView(
+            typed({"not_counted_because",
+                   std::string(
+                       "CASE WHEN pa.status='excluded' THEN 'the participant is excluded' WHEN t.phase='adaptive' THEN "
+                       "'trial of a staircase: see thresholds.csv' WHEN t.phase='catch' THEN 'catch trial' WHEN "
+                       "t.phase<>'main' THEN t.phase WHEN NOT a.valid THEN 'not valid: ' || coalesce(a.invalid_reason, "
+                       "'no reason is stored') WHEN NOT ") +
+                       kEnded + " THEN a.outcome WHEN NOT " + countedSession() +
+                       " THEN 'a complete or later session of the participant counts' END",
+                   "Why they do not count it; NA: they do"}),
+            "coalesce(pr.told, {}, tr.told)"),
         {"feedback_given",
          "(SELECT coalesce(nullif(substr(CASE WHEN y.force_ticks>0 THEN '+kinesthetic' ELSE '' END || CASE WHEN "
          "y.visual_frames>0 THEN '+visual' ELSE '' END || CASE WHEN y.vibrotactile_ticks>0 THEN '+vibrotactile' ELSE "
@@ -120,7 +180,9 @@ Columns trialColumns() {
 const char* const kFromTrials =
     "FROM attempt a JOIN trial_plan t USING(trial_id) JOIN session s USING(session_id) JOIN participant pa "
     "USING(participant_id) JOIN segment g ON g.segment_id=a.segment_id JOIN condition c USING(condition_id) LEFT JOIN "
-    "timing m USING(attempt_id) WINDOW made AS (PARTITION BY t.session_id, t.block_index ORDER BY a.start_ns, "
+    "timing m USING(attempt_id) LEFT JOIN trial_rule tr USING(attempt_id) LEFT JOIN person_rule pr ON "
+    "pr.protocol_sha256=s.protocol_sha256 AND pr.participant_id=s.participant_id WINDOW made AS (PARTITION BY "
+    "t.session_id, t.block_index ORDER BY a.start_ns, "
     "a.attempt_id)";
 
 const char* const kRestricted =
@@ -164,15 +226,17 @@ Columns cellColumns() {
 
 /// Steps of the restricted mean as restrictedMean() of analysis/export/cells.h says it.
 std::string cellParts() {
-    return "WITH RECURSIVE cell AS (SELECT DISTINCT t.session_id, t.block_index, t.block, t.condition_id FROM "
+    return "WITH RECURSIVE " + ruleParts() +
+           ", cell AS (SELECT DISTINCT t.session_id, t.block_index, t.block, t.condition_id FROM "
            "trial_plan t JOIN session s USING(session_id) JOIN participant pa USING(participant_id) WHERE "
            "t.phase='main' AND " +
-           countedSession() +
+           takenSession() +
            "), made AS MATERIALIZED (SELECT t.session_id, t.block_index, t.block, t.condition_id, a.attempt_id, "
            "a.outcome FROM attempt a JOIN trial_plan t USING(trial_id) JOIN session s USING(session_id) JOIN "
            "participant pa USING(participant_id) WHERE t.phase='main' AND a.valid AND " +
-           kEnded + " AND " + countedSession() +
-           "), result AS (SELECT session_id, block_index, condition_id, count(*) trials, sum(outcome='success') "
+           kEnded + " AND " + takenSession() +
+           " AND a.attempt_id NOT IN (SELECT attempt_id FROM trial_rule)), result AS (SELECT session_id, block_index, "
+           "condition_id, count(*) trials, sum(outcome='success') "
            "successes FROM made GROUP BY 1, 2, 3), worth AS (SELECT y.session_id, y.block_index, y.condition_id, "
            "z.measure, z.value_num, row_number() OVER(PARTITION BY y.session_id, y.block_index, y.condition_id, "
            "z.measure ORDER BY z.value_num) place, count(*) OVER(PARTITION BY y.session_id, y.block_index, "
@@ -236,13 +300,11 @@ Columns scoreColumns() {
         {"condition", "c.condition",
          "The condition that it is about, if it is about one; its levels: see cells_long.csv"},
         {"completed_utc", "r.completed_utc", "When the last answer was given"},
-        {"counted",
-         "(" + countedSession() +
-             " AND r.run_id=(SELECT max(o.run_id) FROM questionnaire_run o JOIN questionnaire k "
-             "USING(questionnaire_sha256) WHERE o.session_id=r.session_id AND k.key=q.key AND o.moment=r.moment AND "
-             "o.block_index IS r.block_index AND o.trial_id IS r.trial_id AND o.condition_id IS r.condition_id))",
-         "1 if means and reliability count this form: of a counted session (see sessions.csv) the newest one about "
-         "its occasion"},
+        inView(
+            {"counted", "(" + countedSession() + " AND " + kNewestForm + ")",
+             "1 if means and reliability count this form: of a counted session (see sessions.csv) the newest one about "
+             "its occasion"},
+            std::string("{} AND ") + kNotLeftOut),
         {"scale", "z.scale", "Name of the scale"},
         {"score", "z.value", "NA: too many answers are missing", {}, "see scale_formula"},
         {"n_items", "z.n_items", "Answers that enter; one that enters by two scales counts twice"},
@@ -308,11 +370,12 @@ Columns thresholdColumns() {
 }
 
 std::string thresholdParts() {
-    return "WITH answer AS (SELECT t.session_id, t.block, t.condition_id, f.staircase, f.track, f.reversal, "
+    return "WITH " + ruleParts() +
+           ", answer AS (SELECT t.session_id, t.block, t.condition_id, f.staircase, f.track, f.reversal, "
            "f.estimate, f.estimate_sd, a.attempt_id, a.valid FROM staircase_step f JOIN attempt a USING(attempt_id) "
            "JOIN trial_plan t USING(trial_id) JOIN session s USING(session_id) JOIN participant pa "
            "USING(participant_id) WHERE f.track IS NOT NULL AND f.positive IS NOT NULL AND " +
-           countedSession() +
+           takenSession() +
            // Bare columns are of the row with the largest attempt_id
            "), told AS (SELECT session_id, block, condition_id, staircase, track, sum(valid<>0) trials, sum(valid=0) "
            "invalidated, sum(reversal) reversals, max(attempt_id), estimate, estimate_sd FROM answer GROUP BY "
@@ -324,9 +387,9 @@ const char* const kFromThresholds =
     "USING(condition_id)";
 
 std::vector<ViewText> makeTexts() {
-    return {{"v_trials", trialColumns(), "start_s", "feedback_given", {}, kFromTrials},
+    return {{"v_trials", trialColumns(), "start_s", "feedback_given", "WITH " + ruleParts(), kFromTrials},
             {"v_cells", cellColumns(), "n_trials", {}, cellParts(), kFromCells},
-            {"v_scores", scoreColumns(), {}, {}, {}, kFromScores},
+            {"v_scores", scoreColumns(), {}, {}, "WITH " + ruleParts(), kFromScores},
             {"v_events", eventColumns(), {}, {}, {}, kFromEvents},
             {"v_thresholds", thresholdColumns(), "n_trials", {}, thresholdParts(), kFromThresholds}};
 }

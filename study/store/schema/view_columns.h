@@ -16,7 +16,8 @@ struct ViewColumn {
     std::string unit = {};     // empty: none
     std::string formula = {};  // empty: as recorded
     int formula_version = 1;
-    bool typed = false;  // texts that somebody typed: they may name a person
+    bool typed = false;        // texts that somebody typed: they may name a person
+    std::string in_view = {};  // SQL in the view itself, which knows the protocols' [[exclude]]; empty: the same
 };
 
 enum class StudyView { Trials, Cells, Scores, Events, Thresholds };

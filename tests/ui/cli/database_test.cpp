@@ -1,6 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+#include <numeric>
+
 #include "study/store/schema/sqlite.h"
+#include "tests/analysis/export/csv_reader.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/r_scripts.h"
 #include "tests/ui/cli/small_study.h"
@@ -63,6 +68,49 @@ TEST_F(QueriedDatabase, HasViewsThatSayWhatTheExportsTablesSay) {
         "UPDATE attempt_measure SET value_num=value_num*(1+1e-15) WHERE attempt_id=2 AND measure='time_s'");
     EXPECT_NE(askPython("database_views.py", path("s.db") + path("out"), code).find("v_trials"), std::string::npos);
     EXPECT_NE(code, 0);
+}
+
+TEST_F(QueriedDatabase, LeavesOutWhatTheProtocolsRulesLeaveOut) {
+    // Truth: independent program, as above. The bounds lie between values that the same study has without rules: one
+    // trial and one person of two are beyond them.
+    std::vector<double> times;
+    std::map<std::string, std::vector<double>> of_person;
+    ASSERT_EQ(run({"export", "s.db", "--out", "before", "--no-samples"}), 0);
+    const fake::CsvFile before = fake::readCsv(readText(folder_ / "before/trials.csv"));
+    for (std::size_t row = 0; row < before.rows.size(); ++row) {
+        if (before.at(row, "counted") != "1") continue;
+        times.push_back(std::stod(before.at(row, "time_s")));
+        of_person[before.at(row, "participant_id")].push_back(times.back());
+    }
+    std::sort(times.begin(), times.end());
+    const double above = (times[times.size() - 1] + times[times.size() - 2]) / 2.0;
+    std::vector<double> means;
+    for (auto& [code, values] : of_person) {
+        std::erase_if(values, [&](double time) { return time > above; });
+        means.push_back(std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()));
+    }
+    ASSERT_EQ(means.size(), 2u);
+    writeText(folder_ / "study.toml",
+              readText(folder_ / "study.toml") +
+                  "\n[[exclude]]\ndata = \"trials\"\nvalue = \"time_s\"\nabove = " + std::to_string(above) +
+                  "\nreason = \"slow\"\n[[exclude]]\ndata = \"participants\"\nvalue = \"time_s\"\nabove = " +
+                  std::to_string((means[0] + means[1]) / 2.0) + "\n");
+    ASSERT_EQ(run({"run", "study.toml", "--db", "ruled.db", "--no-backup", "--simulated", "2"}), 0);
+    ASSERT_EQ(run({"export", "ruled.db", "--out", "out", "--no-samples"}), 0);
+    int code = 0;
+    const std::string said = askPython("database_views.py", path("ruled.db") + path("out"), code);
+    EXPECT_EQ(code, 0) << said;
+    const std::string trials = readText(folder_ / "out/trials.csv");
+    EXPECT_NE(trials.find("rule 2: time_s above "), std::string::npos);
+    const store::Database database(folder_ / "ruled.db", store::OpenMode::ReadOnly);
+    EXPECT_EQ(database.integer("SELECT count(DISTINCT participant_id) FROM v_cells"), 1);
+    EXPECT_EQ(database.integer("SELECT count(DISTINCT participant_id) FROM v_trials WHERE counted"), 1);
+    EXPECT_EQ(
+        database.integer(
+            "SELECT count(*) FROM v_trials WHERE not_counted_because LIKE 'rule 1: time_s above % (slow)'") +
+            database.integer("SELECT count(*) FROM v_trials WHERE not_counted_because LIKE 'rule 2%' AND time_s>" +
+                             std::to_string(above)),
+        1);
 }
 
 TEST_F(QueriedDatabase, IsReadFromPythonAndRToTheLastBit) {
