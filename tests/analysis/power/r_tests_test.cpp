@@ -206,11 +206,20 @@ std::map<std::string, double> powerByPackages(int studies, double effect, double
     return power;
 }
 
-TEST_F(RTests, HaveThePowerThatPackagesFindInStudiesOfTheirOwn) {
-    // Truth: independent program (R 4.2.2; studies simulated by lme4, tests of stats, lmerTest and survival): at
-    // spreads of 0, 0.15 and 0.3 s the power of 2000 studies, with the 99 % interval of the difference of two such
-    // shares; without an effect 5 +- 1 %.
+struct Planted {
+    const char* name;
+    double effect, spread;  // [s]
+};
+
+class PowerOfRTests : public RTests, public testing::WithParamInterface<Planted> {};
+
+TEST_P(PowerOfRTests, IsWhatPackagesFindInStudiesOfTheirOwn) {
+    // Truth: independent program (R 4.2.2; studies simulated by lme4, tests of stats, lmerTest and survival): the power
+    // of 2000 studies, with the 99 % interval of the difference of two such shares; without an effect 5 +- 1 %.
     if (!passung::test::atFullLength()) GTEST_SKIP() << "but for PASSUNG_LONG=1";
+    constexpr int kStudies = 2000;
+    const auto truth = powerByPackages(kStudies, GetParam().effect, GetParam().spread);
+    ASSERT_EQ(truth.size(), 4u);
     plan::StudyPlan plan = test::smallPlan();
     plan.participants = 24;
     plan.measures = {kTime};
@@ -218,30 +227,28 @@ TEST_F(RTests, HaveThePowerThatPackagesFindInStudiesOfTheirOwn) {
     test::crossLevels(plan);
     plan.blocks[1].repetitions = 4;
     plan.blocks[1].order = plan::BlockOrder::Random;
-    constexpr int kStudies = 2000;
-    for (const auto& [text, effect, spread] : {std::tuple("method:d=+0.3~0", 0.3, 0.0),
-                                               {"method:d=+0.3~0.15", 0.3, 0.15},
-                                               {"method:d=+0.3~0.3", 0.3, 0.3},
-                                               {"method:d=+0~0", 0.0, 0.0}}) {
-        const auto truth = powerByPackages(kStudies, effect, spread);
-        ASSERT_EQ(truth.size(), 4u);
-        for (const auto& [test, power] : truth) {
-            // Means of times that were cut off are others: the model of hazards alone has a time-out.
-            for (plan::Condition& condition : plan.conditions) condition.task.timeout = test == "survival" ? 7.0 : 1e9;
-            const PlantedEffect planted = effectOf(text, plan);
-            PowerJob job = describeJob(plan, planted, test);
-            job.participants = plan.participants;
-            job.repeats = kStudies;
-            const auto result = runShard(job, {}, planted, plan, timesOfPersons, {});
-            ASSERT_TRUE(result) << toString(result.errors().front());
-            const double found = summarise(*result).power;
-            std::printf("%s, %s: power %.4f, by packages %.4f\n", text, test.c_str(), found, power);
-            EXPECT_NEAR(found, power, 2.576 * std::sqrt(2.0 * power * (1.0 - power) / kStudies)) << text << ' ' << test;
-            if (effect > 0.0) continue;
-            EXPECT_NEAR(found, 0.05, 0.01) << test;
-        }
+    for (const auto& [test, power] : truth) {
+        // Means of times that were cut off are others: the model of hazards alone has a time-out.
+        for (plan::Condition& condition : plan.conditions) condition.task.timeout = test == "survival" ? 7.0 : 1e9;
+        const PlantedEffect planted =
+            effectOf("method:d=+" + std::to_string(GetParam().effect) + '~' + std::to_string(GetParam().spread), plan);
+        PowerJob job = describeJob(plan, planted, test);
+        job.participants = plan.participants;
+        job.repeats = kStudies;
+        const auto result = runShard(job, {}, planted, plan, timesOfPersons, {});
+        ASSERT_TRUE(result) << toString(result.errors().front());
+        const double found = summarise(*result).power;
+        std::printf("%s, %s: power %.4f, by packages %.4f\n", GetParam().name, test.c_str(), found, power);
+        EXPECT_NEAR(found, power, 2.576 * std::sqrt(2.0 * power * (1.0 - power) / kStudies)) << test;
+        if (GetParam().effect > 0.0) continue;
+        EXPECT_NEAR(found, 0.05, 0.01) << test;
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Planted, PowerOfRTests,
+                         testing::Values(Planted{"nothing", 0.0, 0.0}, Planted{"alike", 0.3, 0.0},
+                                         Planted{"spread_150ms", 0.3, 0.15}, Planted{"spread_300ms", 0.3, 0.3}),
+                         [](const auto& planted) { return std::string(planted.param.name); });
 
 }  // namespace
 }  // namespace passung::power
