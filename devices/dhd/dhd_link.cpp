@@ -182,11 +182,7 @@ Exchange DhdLink::read() {
     if (flaw > kOrthonormal || R.determinant() < 0.0)
         return {Exchange::Kind::Wrong, {}, "its orientation is no rotation"};
     Exchange exchange{Exchange::Kind::News, {}, {}};
-    exchange.said.X_BD.p = axes_.toBase(p);
-    // The handle's own axes are renamed as its base's are: at rest both frames agree.
-    Eigen::Matrix3d A;
-    for (int i = 0; i < 3; ++i) A.col(i) = axes_.toBase(Vec3::Unit(i));
-    exchange.said.X_BD.q = Quat(Eigen::Matrix3d(A * R * A.transpose())).normalized();
+    exchange.said.X_BD = axes_.toBase(Pose{Quat(R).normalized(), p});
     exchange.said.buttons = dhd_->getButtonMask(id());
     if (has_grip_ && dhd_->getGripperAngle(&exchange.said.grip_rad, id()) < 0)
         return {Exchange::Kind::Gone, {}, failed("dhdGetGripperAngleRad").message};
