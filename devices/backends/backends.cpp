@@ -9,6 +9,7 @@
 #include "devices/host/hosted_unit.h"
 #include "devices/simulated/presets.h"
 #include "devices/spacenavd/space_mouse_unit.h"
+#include "devices/vrpn/tracker_unit.h"
 
 namespace passung::backends {
 namespace {
@@ -37,12 +38,21 @@ Sighting lookForSigma7(const std::string& library) {
     return {*units, {}};
 }
 
+Sighting lookForTracker(const std::string& address) {
+    const auto at = vrpn::trackerAddress(address);
+    if (!at) return {{}, "the address of the station file " + at.errors().front().message};
+    const auto units = vrpn::TrackerLink::look(*at);
+    if (!units) return {{}, units.errors().front().message};
+    return {*units, {}};
+}
+
 /// Those that push come first.
 constexpr std::array kBackends{
     Backend{"dhd", "Force Dimension sigma.7 through the vendor's library", "sigma7", lookForSigma7, host::openHosted},
     Backend{"haply", "Haply Inverse3 through the Inverse Service", "inverse3", lookForInverse3, haply::openInverse3},
     Backend{"spacenavd", "3Dconnexion SpaceMouse through spacenavd", "spacemouse", lookForSpaceMouse,
             spacenavd::openSpaceMouse},
+    Backend{"vrpn", "Tracker that a VRPN server serves", "tracker", lookForTracker, vrpn::openTracker},
 };
 
 /// Limits of its units: those of the simulated one.
