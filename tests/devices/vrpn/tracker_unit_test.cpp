@@ -268,6 +268,19 @@ TEST(TrackerUnit, MayLieStillWhileNobodyUsesIt) {
     }
 }
 
+TEST(TrackerUnit, IsConnectedAnewAfterASecondWithoutAPose) {
+    // Truth: the fake's own account of connections that ended. A cable that was pulled ends none by itself.
+    VrpnServer server;
+    Feed feed(server);
+    const auto unit = opened(at(server));
+    begin(*unit);
+    feed.does(Feed::Kind::IsSilent);
+    ASSERT_TRUE(reached([&] { return !server.fields().empty(); }));
+    EXPECT_EQ(losses(*unit).size(), 1u) << "stale, before";
+    feed.does(Feed::Kind::Trembles);
+    ASSERT_TRUE(reached([&] { return unit->state() == DeviceState::Present; })) << unit->trouble();
+}
+
 TEST(TrackerUnit, ASampleOf50HzStandsUntilTheNext) {
     // Truth: invariant: of two readings in a row that are not fresh the newest sample is older than 25 ms, whatever the
     // machine does; that of a tracker of 1 kHz is never so old on purpose.
