@@ -116,11 +116,14 @@ TEST(TrackerUnit, GivesPoseButtonsAndGripOfTheSensorThatIsNamed) {
     server.sendButton(32, true);
     server.sendButton(-1, true);
     server.sendButton(0, false);
+    // Button 5 is pressed at the other sender, VRPN Control, which has the number 0; the type of a button has 7.
+    server.sendRaw(std::string("\0\0\0\x20\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x07\0\0\0\0\0\0\0\x05\0\0\0\x01", 32));
     server.sendAnalog({0.4, 7.0});
     server.sendMessage("a type of tomorrow", "12345");
     DeviceReading reading;
     ASSERT_TRUE(reached([&] {
         server.sendPose(3, {0.25, -0.5, 1.0}, {0.0, 0.6, 0.0, 0.8});
+        server.sendPose(2, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0});
         reading = unit->read();
         return reading.buttons != 0 && unit->status().grip_rad == 0.4;
     }));
