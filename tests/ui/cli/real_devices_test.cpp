@@ -10,6 +10,7 @@
 #include "study/store/read/store_reader.h"
 #include "tests/devices/fakes/dhd_block.h"
 #include "tests/devices/fakes/haply_service.h"
+#include "tests/devices/fakes/hd_block.h"
 #include "tests/devices/fakes/space_mouse_daemon.h"
 #include "tests/devices/fakes/vrpn_server.h"
 #include "tests/ui/cli/program.h"
@@ -130,8 +131,27 @@ std::string stationOfShim(const std::string& serial = "4711") {
            "\"\naddress = \"" PASSUNG_DHD_SHIM_FILE "\"\n";
 }
 
-bool isNoForce(const fake::DhdDevice& device) {
-    const fake::DhdCommand last = device.commands.last();
+/// At a Touch behind the shim of its library, whose y points up and z to the operator; along the bore's wall.
+std::function<void(double, double)> handAt(fake::HdDevice& device) {
+    return [&device](double height, double tremor) {
+        const fake::HdCommand command = device.commands.last();
+        const double* felt = command.felt;
+        fake::HdHand hand;
+        hand.position[0] = 0.0013 + felt[0] / kGrip + tremor;
+        hand.position[1] = height + felt[1] / kGrip;
+        hand.position[2] = felt[2] / kGrip;
+        device.hand.store(hand);
+    };
+}
+
+std::string stationOfTouch() {
+    return "[station.device.right]\nkind = \"touch\"\nbackend = \"hd\"\nserial = \"815\"\naddress = "
+           "\"" PASSUNG_HD_SHIM_FILE "\"\n";
+}
+
+template <class Device>
+bool isNoForce(const Device& device) {
+    const auto last = device.commands.last();
     return std::all_of(std::begin(last.felt), std::end(last.felt), [](double component) { return component == 0.0; });
 }
 
@@ -307,6 +327,38 @@ TEST(RealDevices, ASigma7RunsTheSameFileAsItsSimulationWithTheSameTables) {
 
     const std::string sessions = sessionsLikeSimulated(folder);
     EXPECT_NE(sessions.find("dhd,4711"), std::string::npos) << sessions;
+}
+
+TEST(RealDevices, ATouchRunsTheSameFileAsItsSimulationWithTheSameTables) {
+    // Truth: invariant: same files, columns and rows a trial. The shim's own account says that a force was felt.
+    const TempFolder folder;
+    fake::SharedBlock<fake::HdBlock> block(fake::kHdVariable);
+    block->stepped = false;
+    fake::HdDevice& device = block->devices[0];
+    writeText(folder / "peg.toml", pegInHole("kind = \"touch\"", true));
+    writeText(folder / "station.toml", stationOfTouch());
+    {
+        const Hand hand(handAt(device));
+        const Ended real = runProgram(folder.path(), realRun("real.db"));
+        ASSERT_EQ(real.exit_code, 0) << real.out << real.err;
+    }
+    const auto attempts = attemptsOf(folder / "real.db");
+    ASSERT_EQ(attempts.size(), 4u);
+    for (const auto& attempt : attempts) {
+        EXPECT_EQ(faultOf(attempt), "");
+        EXPECT_EQ(attempt.device, "touch");
+        EXPECT_EQ(attempt.outcome, "success");
+    }
+    EXPECT_TRUE(isNoForce(device));
+    EXPECT_FALSE(device.opened);
+    EXPECT_EQ(device.non_finite, 0);
+    bool pushed = false;
+    const auto count = device.commands.count();
+    for (auto row = std::max<std::int64_t>(0, count - 4000); row < count; ++row)
+        pushed = pushed || device.commands.row(row).felt[0] < -0.05;
+    EXPECT_TRUE(pushed) << "in the last trials";
+    const std::string sessions = sessionsLikeSimulated(folder);
+    EXPECT_NE(sessions.find("hd,815"), std::string::npos) << sessions;
 }
 
 TEST(RealDevices, ALibraryThatCrashesInContactPausesTheSessionWhichGoesOn) {
@@ -495,6 +547,23 @@ TEST(RealDevices, DoctorFindsTrackersAndWritesWhichIsWhich) {
     EXPECT_NE(ended.out.find("found: tracker, serial Phantom0#2, VRPN 07.38"), std::string::npos) << ended.out;
     const std::string written = readText(folder / "station.toml");
     EXPECT_NE(written.find(stationOf(server)), std::string::npos) << written;
+}
+
+TEST(RealDevices, DoctorFindsTouchesOrSaysWhichFileIsMissing) {
+    // Truth: invariant; model and serial number are the shim's.
+    const TempFolder folder;
+    fake::SharedBlock<fake::HdBlock> block(fake::kHdVariable);
+    writeText(folder / "look.toml", stationOfTouch());
+    Ended ended =
+        runProgram(folder.path(), {"doctor", "--station-file", "look.toml", "--write-station", "station.toml"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    EXPECT_NE(ended.out.find("found: Premium 6DOF, serial 815, HD 3.4.0, driver 1.0"), std::string::npos) << ended.out;
+    EXPECT_NE(readText(folder / "station.toml").find(stationOfTouch()), std::string::npos);
+    std::string missing = stationOfTouch();
+    missing.replace(missing.find("libhd-shim"), 10, "libnone");
+    writeText(folder / "look.toml", missing);
+    ended = runProgram(folder.path(), {"doctor", "--station-file", "look.toml", "--write-station", "none.toml"});
+    EXPECT_NE(ended.out.find("not found: OpenHaptics' library does not load from "), std::string::npos) << ended.out;
 }
 
 TEST(RealDevices, DoctorFindsSigma7sOrSaysWhichFileIsMissing) {
