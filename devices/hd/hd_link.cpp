@@ -13,7 +13,7 @@ namespace {
 using unit::Exchange;
 
 /// Names that the vendor's set-up gives devices, there being no list of them.
-constexpr const char* kUsualNames[] = {"Default Device", "Left Device", "Right Device"};
+constexpr const char* kUsualNames[] = {"Default Device", "Left Device", "Right Device", "Default PHANToM"};
 constexpr unsigned short kPriority = 0xffff;  // the first to be called
 constexpr double kMetresPerMm = 1e-3;
 constexpr double kSmallestReach = 5.0;  // [mm] of any device; in m no device reaches so far
@@ -97,7 +97,7 @@ Result<DeviceUnit> HdLink::open() {
     auto unit = openChosen();
     if (!unit) return unit.errors();
     if (const auto prepared = prepare(); !prepared) return prepared.errors();
-    unit->calibration = fmt::format("axes {}; {:.4g} Hz", axes_.text(), hd_->number(kUpdateRate));
+    unit->calibration = fmt::format("axes {}; {} Hz", axes_.text(), hd_->integer(kUpdateRate));
     return unit;
 }
 

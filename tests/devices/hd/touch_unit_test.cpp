@@ -183,6 +183,7 @@ TEST(TouchUnit, ASchedulerThatCallsNobodyLosesTheDeviceAndItsHostEnds) {
         study.unit->command(HdFake::push());
         return study.unit->state() != DeviceState::Ready;
     }));
+    EXPECT_TRUE(reached([&] { return study.unit->trouble().find("has not called for 200 ms") != std::string::npos; }));
     EXPECT_TRUE(reached([&] { return !test::runs(hosts.front()); }));
     block->stalled = false;
     ASSERT_TRUE(reached([&] {
