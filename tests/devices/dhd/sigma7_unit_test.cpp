@@ -22,6 +22,7 @@ struct DhdFake {
     using Device = fake::DhdDevice;
     using Hand = fake::DhdHand;
     static constexpr const char* kVariable = fake::kDhdVariable;
+    static constexpr const char* kHost = PASSUNG_DEVICE_HOST_FILE;
     static Wrench push() { return kPush; }
     static DeviceChoice choice(const std::string& serial) {
         return {"right", "sigma7", "dhd", serial, PASSUNG_DHD_SHIM_FILE, {}};

@@ -17,6 +17,7 @@ struct HdFake {
     using Device = fake::HdDevice;
     using Hand = fake::HdHand;
     static constexpr const char* kVariable = fake::kHdVariable;
+    static constexpr const char* kHost = PASSUNG_DEVICE_HOST_FILE;
     static Wrench push() { return {Vec3(2, -1, 0.5), Vec3(0, 0, 0.1)}; }
     static DeviceChoice choice(const std::string& serial) {
         return {"right", "touch", "hd", serial, PASSUNG_HD_SHIM_FILE, {}};

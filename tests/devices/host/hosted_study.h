@@ -24,8 +24,9 @@
 #include "tests/support/length.h"
 
 /// Studies on a unit whose library, a shim, lives in a device host. What differs between shims is their `Fake`: its
-/// Block and Device, the block's variable, choice() of a unit, device() of a block by serial number, shake(), and
-/// felt() of a command, the force along our x.
+/// Block, Device and Hand, the block's variable, the host's file kHost, push(), the wrench of the loop, choice() of a
+/// unit, device() of a block by serial number, runByClock() of the shim, shake() and disturb() of a device, and felt()
+/// of a command, the force along our x.
 namespace passung::host {
 
 using loop::DeviceState;
@@ -39,7 +40,7 @@ template <class Fake>
 class Study {
 public:
     explicit Study(typename Fake::Block& block, const std::string& serial = {}) : block_(block), serial_(serial) {
-        setenv("PASSUNG_DEVICE_HOST", PASSUNG_DEVICE_HOST_FILE, 1);
+        setenv("PASSUNG_DEVICE_HOST", Fake::kHost, 1);
         Fake::runByClock(block);
         auto opened = backends::open(Fake::choice(serial));
         if (!opened) throw std::runtime_error(opened.errors().front().message);

@@ -86,16 +86,17 @@ std::vector<std::string> readWhole(std::string_view stream) {
 }
 
 /// What the stream says, typed in once more.
+const std::string kFarPose = "body of the room 120#0 4.9406564584124654e-324 -0 1.0000000000000001e+300 0 0 0 1";
+const std::string kWandPose =
+    "Wand#2 1.1000000000000001 2.2000000000000002 -3.2999999999999998 0 0.59999999999999998 0 0.80000000000000004";
 const std::vector<std::string> kSaid{"version 07.38",
                                      "Phantom0#0 0.125 -0.25 0.0078125 0.5 -0.5 0.5 0.5",
-                                     "Wand#2 1.1000000000000001 2.2000000000000002 -3.2999999999999998 0 "
-                                     "0.59999999999999998 0 0.80000000000000004",
+                                     kWandPose,
                                      "Phantom0 presses 1",
                                      "Phantom0 releases 1",
                                      "Phantom0 opens 0.75",
                                      "Phantom0 pushes 0.5 0 -2",
-                                     "body of the room 120#0 4.9406564584124654e-324 -0 1.0000000000000001e+300 0 0 0 "
-                                     "1"};
+                                     kFarPose};
 
 TEST(TrackerWire, ReadsAStreamWhateverItsNumbersAndTheirOrder) {
     // Truth: independent program (Python 3.11, struct): the kept stream.
@@ -145,7 +146,7 @@ TEST(TrackerWire, AShiftedStreamNeverGivesAPoseThatWasNotSent) {
 TEST(TrackerWire, ALengthThatCannotBeIsToldBeforeAnyMoreIsWaitedFor) {
     // Truth: invariant: a length covers the head, and is no longer than a server's own buffer.
     const std::vector<std::string> messages = keptStream();
-    const std::string pose = messages.back();
+    const std::string& pose = messages.back();
     for (const std::uint32_t length : {0u, 1u, 23u, MessageCutter::kLongest + 1, 0x7fffffffu, 0xffffffffu}) {
         std::string head = pose.substr(0, 24);
         for (std::size_t i = 0; i < 4; ++i) head[i] = static_cast<char>(length >> (24 - 8 * i) & 0xff);
