@@ -257,10 +257,10 @@ void LinkedUnit::lose(DeviceState state, const std::string& why) {
     trouble_ = why;
 }
 
-/// Something to be told that changes no state.
+/// Something to be told that changes no state. Of a unit that cannot be used the loss alone is news.
 void LinkedUnit::remark(const std::string& what) {
     const std::lock_guard lock(mutex_);
-    news_.push_back({state(), what});
+    if (const UnitNews news{state(), what}; !news.isLoss()) news_.push_back(news);
 }
 
 }  // namespace passung::unit
