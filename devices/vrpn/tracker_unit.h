@@ -30,7 +30,7 @@ public:
     static constexpr std::chrono::milliseconds kCensus{300};      // of trackers, where none is named
     static constexpr std::chrono::milliseconds kSilent{1000};     // without a pose it is looked for anew
 
-    /// `serial` empty: the only tracker.
+    /// Of an address without a serial: the only tracker.
     TrackerLink(DeviceChoice choice, TrackerAddress address, unit::Axes axes);
     ~TrackerLink() override;
 
