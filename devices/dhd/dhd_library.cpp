@@ -7,8 +7,10 @@ namespace {
 
 /// The library that drives devices has all names of the one that only reads and pushes.
 constexpr const char* kUsualFiles[] = {"libdhd.so.3", "libdhd.so", "libdrd.so.3", "libdrd.so"};
-constexpr host::LibraryWords kWords{"Force Dimension's library", DhdLibrary::kFileVariable, kUsualFiles, "3.17",
-                                    "install the Force Dimension SDK 3 of forcedimension.com"};
+constexpr host::LibraryWords kWords{
+    "Force Dimension's library", DhdLibrary::kFileVariable, kUsualFiles, "3.17",
+    "install the Force Dimension SDK 3 of forcedimension.com, and write the path of its "
+    "libdhd.so"};
 
 }  // namespace
 

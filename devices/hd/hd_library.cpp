@@ -10,7 +10,8 @@ namespace {
 constexpr const char* kUsualFiles[] = {"libHD.so.3.4", "libHD.so"};
 constexpr host::LibraryWords kWords{
     "OpenHaptics' library", HdLibrary::kFileVariable, kUsualFiles, "3.4",
-    "install OpenHaptics 3.4 for Linux and the driver of the device, both of 3D Systems"};
+    "install OpenHaptics 3.4 for Linux and the driver of the device, both of 3D Systems, "
+    "and write the path of its libHD.so"};
 constexpr int kMostErrors = 64;  // that a library may keep
 
 }  // namespace

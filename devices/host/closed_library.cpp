@@ -18,8 +18,7 @@ std::string namedFile(const std::string& file, const char* variable) {
 }  // namespace
 
 std::string ClosedLibrary::adviceOf(const LibraryWords& words) {
-    return fmt::format("{}, and write the path of its {} as `address` into the station file, or into {}", words.remedy,
-                       words.usual.back(), words.variable);
+    return fmt::format("{} as `address` into the station file, or into {}", words.remedy, words.variable);
 }
 
 Result<std::unique_ptr<ClosedLibrary>> ClosedLibrary::load(const std::string& file, const LibraryWords& words) {

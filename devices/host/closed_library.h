@@ -14,7 +14,7 @@ struct LibraryWords {
     const char* variable;                // of the environment, that names its file
     std::span<const char* const> usual;  // names of its file
     const char* since;                   // version that has all functions
-    const char* remedy;                  // what to install
+    const char* remedy;                  // what to install, and which file of it
 };
 
 /// A library that nobody links: loaded at run time, its functions taken by name.
