@@ -38,7 +38,7 @@ if(PASSUNG_PROGRAM)
   list(TRANSFORM study_rooms PREPEND passung_study_)
   passung_install(engine FOLDERS devices study analysis/truth
     TARGETS passung_devices_simulated passung_devices_scripted passung_devices_mouse passung_devices_unit
-      passung_devices_spacenavd passung_devices_haply passung_devices_host passung_devices_backends passung_analysis_truth
+      passung_devices_spacenavd passung_devices_vrpn passung_devices_haply passung_devices_host passung_devices_backends passung_analysis_truth
     passung_analysis_accuracy passung_analysis_overlap passung_analysis_tick_accuracy ${study_rooms})
 endif()
 

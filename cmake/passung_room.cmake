@@ -66,7 +66,7 @@ endfunction()
 
 # Rooms in which nothing is hot: they wait for files and people, or are as fast so; -O1 compiles them in half the time.
 set(PASSUNG_COLD_OPTIONS $<$<NOT:$<CONFIG:Debug>>:-O1>)
-set(PASSUNG_COLD_ROOMS "^(core/scene|devices/(mouse|scripted|spacenavd|haply|dhd|backends)|analysis/(accuracy|export|power|report|stats|tick_accuracy)|study/(design|plan|protocol|run|session|store/(schema|rows|read|write|people|transfer|postgres))|ui/.*)$")
+set(PASSUNG_COLD_ROOMS "^(core/scene|devices/(mouse|scripted|spacenavd|vrpn|haply|dhd|hd|backends)|analysis/(accuracy|export|power|report|stats|tick_accuracy)|study/(design|plan|protocol|run|session|store/(schema|rows|read|write|people|transfer|postgres))|ui/.*)$")
 
 include(${CMAKE_CURRENT_LIST_DIR}/tick_rooms.cmake)
 

@@ -89,7 +89,7 @@ set(libraries
   "XCB      | ^xcb/                            | ui/window tests                        | cpp"
   "gbench   | ^benchmark/                      | tests                                  | cpp"
   "gtest    | ^g(test|mock)/                   | tests                                  | any"
-  "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|spawn|signal|time|dlfcn|termios|malloc|pwd|grp)[.]h$ | core/base core/loop devices study/store study/run analysis/report ui tests | cpp")
+  "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|spawn|signal|time|dlfcn|termios|malloc|netdb|pwd|grp)[.]h$ | core/base core/loop devices study/store study/run analysis/report ui tests | cpp")
 
 # The tick: a positive list. What is not here allocates, locks, throws, waits or talks to the system.
 set(tick_standard_headers algorithm array atomic bit bitset cassert cfloat climits cmath compare concepts cstddef

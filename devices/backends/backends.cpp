@@ -9,6 +9,7 @@
 #include "devices/host/hosted_unit.h"
 #include "devices/simulated/presets.h"
 #include "devices/spacenavd/space_mouse_unit.h"
+#include "devices/vrpn/tracker_unit.h"
 
 namespace passung::backends {
 namespace {
@@ -31,8 +32,19 @@ Sighting lookForInverse3(const std::string& address) {
     return found;
 }
 
-Sighting lookForSigma7(const std::string& library) {
-    const auto units = host::lookHosted("dhd", library);
+Sighting lookInHost(const char* backend, const std::string& library) {
+    const auto units = host::lookHosted(backend, library);
+    if (!units) return {{}, units.errors().front().message};
+    return {*units, {}};
+}
+
+Sighting lookForSigma7(const std::string& library) { return lookInHost("dhd", library); }
+Sighting lookForTouch(const std::string& library) { return lookInHost("hd", library); }
+
+Sighting lookForTracker(const std::string& address) {
+    const auto at = vrpn::trackerAddress(address);
+    if (!at) return {{}, "the address of the station file " + at.errors().front().message};
+    const auto units = vrpn::TrackerLink::look(*at);
     if (!units) return {{}, units.errors().front().message};
     return {*units, {}};
 }
@@ -40,9 +52,11 @@ Sighting lookForSigma7(const std::string& library) {
 /// Those that push come first.
 constexpr std::array kBackends{
     Backend{"dhd", "Force Dimension sigma.7 through the vendor's library", "sigma7", lookForSigma7, host::openHosted},
+    Backend{"hd", "3D Systems Touch through OpenHaptics", "touch", lookForTouch, host::openHosted},
     Backend{"haply", "Haply Inverse3 through the Inverse Service", "inverse3", lookForInverse3, haply::openInverse3},
     Backend{"spacenavd", "3Dconnexion SpaceMouse through spacenavd", "spacemouse", lookForSpaceMouse,
             spacenavd::openSpaceMouse},
+    Backend{"vrpn", "Tracker that a VRPN server serves", "tracker", lookForTracker, vrpn::openTracker},
 };
 
 /// Limits of its units: those of the simulated one.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "devices/host/closed_library.h"
 
 namespace passung::dhd {
 
@@ -13,13 +14,7 @@ namespace passung::dhd {
 struct DhdLibrary {
     static constexpr const char* kFileVariable = "PASSUNG_DHD_LIBRARY";
 
-    /// Loads `file`, else the one that the variable names, else one of the usual names. Errors: which file was looked
-    /// for where, or which name is missing in it.
     static Result<std::unique_ptr<DhdLibrary>> load(const std::string& file);
-    ~DhdLibrary();
-    DhdLibrary(const DhdLibrary&) = delete;
-    DhdLibrary& operator=(const DhdLibrary&) = delete;
-
     /// What went wrong in the last call, in the vendor's words.
     std::string lastError() const;
 
@@ -49,10 +44,10 @@ struct DhdLibrary {
     int version[4] = {};
 
 private:
-    DhdLibrary() = default;
-    std::string missingName();
+    explicit DhdLibrary(std::unique_ptr<host::ClosedLibrary> file) : file_(std::move(file)) {}
+    void takeFunctions();
 
-    void* library_ = nullptr;
+    std::unique_ptr<host::ClosedLibrary> file_;
 };
 
 }  // namespace passung::dhd

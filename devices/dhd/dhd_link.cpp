@@ -5,13 +5,14 @@
 #include <cstdlib>
 #include <optional>
 
+#include "devices/host/library_pose.h"
+
 namespace passung::dhd {
 namespace {
 
 using unit::Exchange;
 
 constexpr std::string_view kModel = "sigma.7";
-constexpr double kOrthonormal = 1e-3;
 
 // Places in what dhdGetStatus says.
 constexpr int kForceOn = 5, kBrakesOn = 6, kForceOffCause = 14, kStatusLength = 32;
@@ -173,20 +174,10 @@ Exchange DhdLink::read() {
     double rows[3][3];
     if (dhd_->getPose(&p.x(), &p.y(), &p.z(), rows, id()) < 0)
         return {Exchange::Kind::Gone, {}, failed("dhdGetPositionAndOrientationFrame").message};
-    Eigen::Matrix3d R;
+    Mat3 R;
     for (int i = 0; i < 3; ++i) R.row(i) << rows[i][0], rows[i][1], rows[i][2];
-    if (!p.allFinite() || !R.allFinite()) return {Exchange::Kind::Wrong, {}, "a value is no finite number"};
-    if (p.norm() > kFarthest)
-        return {Exchange::Kind::Wrong, {}, "its position is beyond any device's reach: does the library count in mm?"};
-    const double flaw = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-    if (flaw > kOrthonormal || R.determinant() < 0.0)
-        return {Exchange::Kind::Wrong, {}, "its orientation is no rotation"};
-    Exchange exchange{Exchange::Kind::News, {}, {}};
-    exchange.said.X_BD.p = axes_.toBase(p);
-    // The handle's own axes are renamed as its base's are: at rest both frames agree.
-    Eigen::Matrix3d A;
-    for (int i = 0; i < 3; ++i) A.col(i) = axes_.toBase(Vec3::Unit(i));
-    exchange.said.X_BD.q = Quat(Eigen::Matrix3d(A * R * A.transpose())).normalized();
+    Exchange exchange = host::saidPose(R, p, axes_);
+    if (exchange.kind != Exchange::Kind::News) return exchange;
     exchange.said.buttons = dhd_->getButtonMask(id());
     if (has_grip_ && dhd_->getGripperAngle(&exchange.said.grip_rad, id()) < 0)
         return {Exchange::Kind::Gone, {}, failed("dhdGetGripperAngleRad").message};

@@ -19,8 +19,7 @@ inline constexpr const char* kDefaultAxes = "y -x z";
 /// wrench, and ends it by itself only if it is not called for kWatchdog.
 class DhdLink final : public unit::Link {
 public:
-    static constexpr int kWatchdog = 20;      // [ms]
-    static constexpr double kFarthest = 1.0;  // [m]: beyond any device of the vendor's, but near in mm
+    static constexpr int kWatchdog = 20;  // [ms]
 
     DhdLink(DeviceChoice choice, DeviceDescription limits);
     ~DhdLink() override;

@@ -9,6 +9,7 @@
 
 #include <cstdio>
 
+#include "devices/host/paced_link.h"
 #include "devices/host/shared_pages.h"
 #include "devices/unit/heartbeat_watch.h"
 #include "devices/unit/wrench_gate.h"
@@ -70,9 +71,9 @@ void ring() noexcept {
 }
 
 /// Waits for a command; false: the study has gone.
-bool awaitBell() {
+bool awaitBell(std::chrono::milliseconds longest) {
     pollfd bell{kBellDescriptor, POLLIN, 0};
-    if (poll(&bell, 1, static_cast<int>(kPatience.count())) <= 0) return true;
+    if (poll(&bell, 1, static_cast<int>(longest.count())) <= 0) return true;
     char strokes[64];
     const ssize_t count = recv(kBellDescriptor, strokes, sizeof strokes, MSG_DONTWAIT);
     return count != 0 && (bell.revents & (POLLHUP | POLLERR)) == 0;
@@ -102,28 +103,63 @@ Wrench wrenchOf(const StudyCommand& command) {
     return F;
 }
 
-void serve(unit::Link& link, const DeviceDescription& limits, const Pages& pages) {
-    unit::HeartbeatWatch watch{std::chrono::milliseconds(pages.study->task.heartbeat_ms), kRecovers};
-    StudyCommand command;
-    std::uint64_t number = 0;
-    while (awaitBell()) {
+/// The device's cycles, by whosever thread: a command in, a report out.
+class Serving {
+public:
+    Serving(unit::Link& link, const DeviceDescription& limits, const Pages& pages)
+        : link_(link),
+          limits_(limits),
+          pages_(pages),
+          watch_(std::chrono::milliseconds(pages.study->task.heartbeat_ms), kRecovers) {}
+
+    /// One of them, which begins with a command, or after `patience`; false: it was the last, and gave no force.
+    bool cycle(std::chrono::milliseconds patience) {
         alarm(kHangs);
-        if (const auto newest = pages.study->now.load()) command = *newest;
-        Wrench F = wrenchOf(command);
+        if (awaitBell(patience) && exchange()) return true;
+        link_.exchange({}, kPatience);
+        return false;
+    }
+
+    void tell(const Exchange& exchange) {
+        HostReport report = reportOf(exchange, command_, watch_);
+        report.number = ++number_;
+        pages_.host->now.store(report);
+        ring();
+    }
+
+private:
+    bool exchange() {
+        if (const auto newest = pages_.study->now.load()) command_ = *newest;
+        Wrench F = wrenchOf(command_);
         const bool pushes = !F.force.isZero(0.0) || !F.torque.isZero(0.0);
-        const double share = watch.share({command.number, command.at, pushes, command.withheld_seen}, now());
+        const double share = watch_.share({command_.number, command_.at, pushes, command_.withheld_seen}, now());
         F.force *= share;
         F.torque *= share;
-        const Exchange exchange = link.exchange(unit::passed(F, limits, share > 0.0), kPatience);
+        const Exchange said = link_.exchange(unit::passed(F, limits_, share > 0.0), kPatience);
         // What it said cannot be used: no force until the study knows.
-        if (exchange.kind != Exchange::Kind::News) watch.withhold();
-        HostReport report = reportOf(exchange, command, watch);
-        report.number = ++number;
-        pages.host->now.store(report);
-        ring();
-        if (exchange.kind == Exchange::Kind::Gone) break;
+        if (said.kind != Exchange::Kind::News) watch_.withhold();
+        tell(said);
+        return said.kind != Exchange::Kind::Gone;
     }
-    link.exchange({}, kPatience);
+
+    unit::Link& link_;
+    const DeviceDescription& limits_;
+    const Pages& pages_;
+    unit::HeartbeatWatch watch_;
+    StudyCommand command_;
+    std::uint64_t number_ = 0;
+};
+
+void serve(unit::Link& link, const DeviceDescription& limits, const Pages& pages) {
+    Serving serving(link, limits, pages);
+    alarm(kHangs);
+    if (auto* paced = dynamic_cast<PacedLink*>(&link)) {
+        const auto paced_to_the_end = paced->pace([&] { return serving.cycle(std::chrono::milliseconds(0)); });
+        if (!paced_to_the_end) serving.tell({Exchange::Kind::Gone, {}, paced_to_the_end.errors().front().message});
+        return;
+    }
+    while (serving.cycle(kPatience)) {
+    }
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ struct HostedLibrary {
 };
 
 /// The whole of a device host's work, until the study has gone; the exit code. A cycle of the device begins with each
-/// command, or kPatience after the last one; the device's last wrench is zero.
+/// command, or kPatience after the last one, or where the library has a servo thread with each of its ticks; the
+/// device's last wrench is zero.
 int serveLibrary(const HostedLibrary& library);
 
 inline constexpr std::chrono::milliseconds kPatience{2};

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "devices/dhd/dhd_link.h"
+#include "devices/hd/hd_link.h"
 #include "devices/host/serve_link.h"
 
 // The program passung-device-host: owns the device of a closed library for passung, so that nothing that the library
@@ -18,10 +19,12 @@ struct Hosted {
     host::HostedLibrary library;
 };
 
-constexpr Hosted kHosted[] = {{"dhd", {dhd::look, [](const DeviceChoice& choice, const DeviceDescription& limits) {
-                                           return std::unique_ptr<unit::Link>(
-                                               std::make_unique<dhd::DhdLink>(choice, limits));
-                                       }}}};
+template <class Link>
+std::unique_ptr<unit::Link> made(const DeviceChoice& choice, const DeviceDescription& limits) {
+    return std::make_unique<Link>(choice, limits);
+}
+
+constexpr Hosted kHosted[] = {{"dhd", {dhd::look, made<dhd::DhdLink>}}, {"hd", {hd::look, made<hd::HdLink>}}};
 
 }  // namespace
 

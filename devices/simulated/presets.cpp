@@ -269,6 +269,18 @@ DeviceParams spaceMouse() {
     };
 }
 
+/// Stands for what a room's cameras or a server's own device follow, and has no motors: what it is told is shown as an
+/// arrow. The limits are those of the arrow, the mechanism is the sigma.7's.
+DeviceParams tracker() {
+    DeviceParams p = spaceMouse();
+    p.name = "tracker";
+    p.label = "Tracker of six degrees without motors (simulated)";
+    p.degrees_source = "pose of one sensor: VRPN's protocol; delay: proposed here";
+    p.workspace_radius = {2.0, kProposed};
+    p.buttons = {};
+    return p;
+}
+
 /// Stands for whatever device serves: nothing of it is known, its limits are the most that may be asked of it.
 DeviceParams anyDevice() {
     return {
@@ -414,7 +426,7 @@ const std::vector<DeviceParams>& presets() {
 }
 
 const std::vector<DeviceParams>& standIns() {
-    static const std::vector<DeviceParams> all = {inverse3(), spaceMouse(), anyDevice()};
+    static const std::vector<DeviceParams> all = {inverse3(), spaceMouse(), tracker(), anyDevice()};
     return all;
 }
 

@@ -57,8 +57,8 @@ DeviceDescription describe(const DeviceParams& params);
 /// sigma7, hug, virtuose6d, falcon, whi, touch.
 const std::vector<DeviceParams>& presets();
 
-/// Simulated in place of kinds of device whose mechanism nobody has told: inverse3, spacemouse, and kAnyKind, of which
-/// no stable stiffness is known.
+/// Simulated in place of kinds of device whose mechanism nobody has told: inverse3, spacemouse, tracker, and kAnyKind,
+/// of which no stable stiffness is known.
 const std::vector<DeviceParams>& standIns();
 
 /// Of either; nullptr if there is none of that name.

@@ -40,6 +40,12 @@ Vec3 Axes::toDevice(const Vec3& base) const noexcept {
     return device;
 }
 
+Pose Axes::toBase(const Pose& device) const noexcept {
+    // With A the matrix of these axes: A R(n, angle) A^T = R(det(A) A n, angle).
+    const Vec3 v = (mirrors() ? -1.0 : 1.0) * toBase(Vec3(device.q.vec()));
+    return {Quat(device.q.w(), v.x(), v.y(), v.z()), toBase(device.p)};
+}
+
 bool Axes::mirrors() const noexcept {
     return toBase(Vec3::UnitX()).cross(toBase(Vec3::UnitY())).dot(toBase(Vec3::UnitZ())) < 0.0;
 }

@@ -20,6 +20,8 @@ public:
 
     Vec3 toBase(const Vec3& device) const noexcept;
     Vec3 toDevice(const Vec3& base) const noexcept;
+    /// The handle's own axes are renamed as the base's are: at rest both frames agree.
+    Pose toBase(const Pose& device) const noexcept;
     bool mirrors() const noexcept;  // left-handed to right-handed
     std::string text() const;
 

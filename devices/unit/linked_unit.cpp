@@ -196,6 +196,12 @@ Wrench LinkedUnit::wrenchNow() noexcept {
     return passed(F, params_.description, isReady());
 }
 
+/// Its values may be the same to the last bit: nothing pushes it, nor, where nothing ever does, does anybody use it.
+bool LinkedUnit::mayStandStill(const Wrench& given) const noexcept {
+    if (params_.gives_speeds) return true;
+    return params_.pushes ? isZero(given) : !isLent();
+}
+
 /// Takes what was said, or tells what is wrong with it.
 bool LinkedUnit::judge(const Said& said, const Wrench& given) {
     const std::int64_t time = now();
@@ -204,15 +210,14 @@ bool LinkedUnit::judge(const Said& said, const Wrench& given) {
         lose(DeviceState::Fault, wrong);
         return false;
     }
-    if (judged_.count == 0 || isZero(given) || params_.gives_speeds || !same(said, judged_.last))
-        judged_.differed_at = time;
+    if (judged_.count == 0 || mayStandStill(given) || !same(said, judged_.last)) judged_.differed_at = time;
     judged_.last = said;
     judged_.at = time;
     ++judged_.count;
     if (isReady() && time - judged_.differed_at > in(params_.frozen_after)) {
         lose(DeviceState::Fault, "its values have not changed by a bit for " +
-                                     std::to_string(params_.frozen_after.count()) +
-                                     " ms, although it pushes: they stand still");
+                                     std::to_string(params_.frozen_after.count()) + " ms, although it " +
+                                     (params_.pushes ? "pushes" : "is in use") + ": they stand still");
         return false;
     }
     said_.put({said, time, judged_.count});
@@ -252,10 +257,10 @@ void LinkedUnit::lose(DeviceState state, const std::string& why) {
     trouble_ = why;
 }
 
-/// Something to be told that changes no state.
+/// Something to be told that changes no state. Of a unit that cannot be used the loss alone is news.
 void LinkedUnit::remark(const std::string& what) {
     const std::lock_guard lock(mutex_);
-    news_.push_back({state(), what});
+    if (const UnitNews news{state(), what}; !news.isLoss()) news_.push_back(news);
 }
 
 }  // namespace passung::unit

@@ -24,7 +24,7 @@ struct LinkedParams {
     std::chrono::milliseconds heartbeat{5};       // that a wrench holds without the next
     std::chrono::milliseconds reading_stands{5};  // without the next
     std::chrono::milliseconds stale_after{50};    // without a word, while it is lent
-    std::chrono::milliseconds frozen_after{200};  // the same values to the last bit, while it is pushed
+    std::chrono::milliseconds frozen_after{200};  // the same values to the last bit, while it pushes, or else is lent
     std::chrono::milliseconds first_retry{100};   // of looking for it; doubled up to kLastRetry
 };
 
@@ -74,7 +74,7 @@ private:
         std::int64_t count = 0;
         Said last;
         Nanoseconds at = 0;           // of the last
-        Nanoseconds differed_at = 0;  // when it was another than the one before, or nothing was pushed
+        Nanoseconds differed_at = 0;  // when it was another than the one before, or need not have been
     };
 
     void main();
@@ -82,6 +82,7 @@ private:
     void isSound();
     bool awaitCommand();
     Wrench wrenchNow() noexcept;
+    bool mayStandStill(const Wrench& given) const noexcept;
     bool judge(const Said& said, const Wrench& given);
     std::string flaw(const Said& said, Nanoseconds now) const;
     void become(loop::DeviceState state, const std::string& why);

@@ -39,8 +39,8 @@ inline constexpr std::array kSceneKeys{
     Key{"station_device", "kind", Text, kAny, "", "!", "Kind that the device serves, as protocols name it."},
     Key{"station_device", "backend", Text, kAny, "", "!", "Way to it: one of those that `passung doctor` lists, or \"simulated\"."},
     Key{"station_device", "serial", Text, kAny, "", "(the only one)", "Serial number of the unit, as `passung doctor` shows it; needed where there are two."},
-    Key{"station_device", "address", Text, kAny, "", "(the usual one)", "Where the program listens that serves it, or the library lies: for spacenavd the path of its socket, for haply HOST:PORT or HOST:PORT:EVENTPORT, for dhd the file of the vendor's library, libdhd.so."},
-    Key{"station_device", "axes", Text, kAny, "", "(the backend's)", "Axes of the device along x, y and z of its base, as in \"x -z y\"; spacenavd and dhd only."},
+    Key{"station_device", "address", Text, kAny, "", "(the usual one)", "Where the program listens that serves it, or the library lies: for spacenavd the path of its socket, for haply HOST:PORT or HOST:PORT:EVENTPORT, for vrpn NAME@HOST:PORT#SENSOR, for dhd and hd the file of the vendor's library, libdhd.so or libHD.so; for hd also FILE#NAME, with the device's name in the vendor's set-up."},
+    Key{"station_device", "axes", Text, kAny, "", "(the backend's)", "Axes of the device along x, y and z of its base, as in \"x -z y\"; not those of haply."},
     Key{"station_device", "heartbeat_ms", Integer, from(2, 50), "", "5", "How long a wrench holds without the next, if the program or its loop stops [ms]."},
 
     Key{"calibration", "device", Text, kAny, "", "!", "Name of the device."},

@@ -90,6 +90,7 @@ namespace {
     QT_TRANSLATE_NOOP("devices", "3D Systems Touch, formerly Phantom Omni (simulated)"),
     QT_TRANSLATE_NOOP("devices", "Haply Inverse3 with a grip (simulated)"),
     QT_TRANSLATE_NOOP("devices", "3Dconnexion SpaceMouse (simulated)"),
+    QT_TRANSLATE_NOOP("devices", "Tracker of six degrees without motors (simulated)"),
     QT_TRANSLATE_NOOP("devices", "Any device (simulated)"),
 };
 

@@ -194,7 +194,9 @@ TEST(DhdLink, SaysWhatIsMissingAndWhatToDo) {
     EXPECT_TRUE(DhdLibrary::load({}));
     unsetenv(DhdLibrary::kFileVariable);
     const auto usual = DhdLibrary::load({});
-    if (!usual) has(usual.errors().front().message, {"libdhd.so.3, libdhd.so, libdrd.so.3", "ld.so.conf"});
+    if (!usual)
+        has(usual.errors().front().message,
+            {"libdhd.so.3, libdhd.so, libdrd.so.3", "ld.so.conf", "path of its libdhd.so"});
 }
 
 struct Saying {

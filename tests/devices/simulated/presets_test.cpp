@@ -25,13 +25,13 @@ TEST(Presets, TheSixDevicesAreThereAndValid) {
 
 TEST(Presets, KindsWithoutAModelHaveAStandIn) {
     // Truth: invariant.
-    for (const char* name : {"inverse3", "spacemouse", "any"}) {
+    for (const char* name : {"inverse3", "spacemouse", "tracker", "any"}) {
         const DeviceParams* p = findPreset(name);
         ASSERT_NE(p, nullptr) << name;
         EXPECT_TRUE(p->validate().empty()) << name;
         EXPECT_EQ(describe(*p).stable_stiffness_N_per_m > 0.0, p->name != "any") << "of any device nobody knows it";
     }
-    EXPECT_EQ(standIns().size(), 3u);
+    EXPECT_EQ(standIns().size(), 4u);
 }
 
 TEST(Presets, EveryValueSaysWhereItComesFrom) {

@@ -51,6 +51,22 @@ TEST(Axes, EachOfThe48IsReadWrittenAndTurnedBackAndTheOther47AreTold) {
     }
 }
 
+TEST(Axes, APoseAtRestIsAtRestAndTurnsAsItsAxesDo) {
+    // Truth: closed form: R' = A R A^T, A's columns where the device's axes point, mirrors among them.
+    const Pose device{rotationFromVector(Vec3(0.3, -1.1, 0.7)), Vec3(0.1, -0.25, 0.7)};
+    for (const std::string& text : allAxes()) {
+        const auto axes = Axes::parse(text);
+        EXPECT_EQ(axes->toBase(Pose{}).q.coeffs(), Quat::Identity().coeffs());
+        Mat3 A;
+        for (int i = 0; i < 3; ++i) A.col(i) = axes->toBase(Vec3(Vec3::Unit(i)));
+        const Pose base = axes->toBase(device);
+        EXPECT_EQ(base.p, axes->toBase(device.p));
+        EXPECT_LT((base.q.toRotationMatrix() - A * device.q.toRotationMatrix() * A.transpose()).cwiseAbs().maxCoeff(),
+                  1e-15)
+            << text;
+    }
+}
+
 TEST(Axes, RefusesWhatNamesNoThreeAxes) {
     // Truth: invariant.
     for (const char* text :

@@ -225,6 +225,34 @@ std::vector<FaultCase> faults() {
 INSTANTIATE_TEST_SUITE_P(Faults, LinkedUnitFault, testing::ValuesIn(faults()),
                          [](const testing::TestParamInfo<FaultCase>& fault) { return fault.param.name; });
 
+TEST(LinkedUnit, WhatIsToldBesideAFaultIsNoOtherFault) {
+    // Truth: invariant: of a unit that is in use a remark is told; of one that has a fault it would be a second one.
+    Bench bench;
+    bench.push();
+    const auto remarking = [](std::int64_t n) {
+        Exchange exchange = trembling(n);
+        exchange.why = "by the way";
+        return exchange;
+    };
+    bench.script.say(remarking);
+    EXPECT_TRUE(reached([&] {
+        bench.tick();
+        const auto news = bench.unit->takeNews();
+        return std::any_of(news.begin(), news.end(), [](const UnitNews& n) { return n.why == "by the way"; });
+    }));
+    bench.script.say([remarking](std::int64_t n) {
+        return n == 0 ? Exchange{Kind::Wrong, {}, "broken"} : remarking(n);
+    });
+    ASSERT_TRUE(reached([&] {
+        bench.tick();
+        return bench.unit->state() == DeviceState::Fault;
+    }));
+    for (int i = 0; i < 20; ++i) bench.tick();
+    const auto losses = bench.losses();
+    ASSERT_EQ(losses.size(), 1u);
+    EXPECT_EQ(losses.front().why, "broken");
+}
+
 TEST(LinkedUnit, IsLookedForAgainWhenItWasUnpluggedAndWaitsToBeArmed) {
     // Truth: invariant.
     Bench bench;

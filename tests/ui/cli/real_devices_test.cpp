@@ -10,7 +10,9 @@
 #include "study/store/read/store_reader.h"
 #include "tests/devices/fakes/dhd_block.h"
 #include "tests/devices/fakes/haply_service.h"
+#include "tests/devices/fakes/hd_block.h"
 #include "tests/devices/fakes/space_mouse_daemon.h"
+#include "tests/devices/fakes/vrpn_server.h"
 #include "tests/ui/cli/program.h"
 
 namespace passung::test {
@@ -129,9 +131,39 @@ std::string stationOfShim(const std::string& serial = "4711") {
            "\"\naddress = \"" PASSUNG_DHD_SHIM_FILE "\"\n";
 }
 
-bool isNoForce(const fake::DhdDevice& device) {
-    const fake::DhdCommand last = device.commands.last();
+/// At a Touch behind the shim of its library, whose y points up and z to the operator; along the bore's wall.
+std::function<void(double, double)> handAt(fake::HdDevice& device) {
+    return [&device](double height, double tremor) {
+        const fake::HdCommand command = device.commands.last();
+        const double* felt = command.felt;
+        fake::HdHand hand;
+        hand.position[0] = 0.0013 + felt[0] / kGrip + tremor;
+        hand.position[1] = height + felt[1] / kGrip;
+        hand.position[2] = felt[2] / kGrip;
+        device.hand.store(hand);
+    };
+}
+
+std::string stationOfTouch() {
+    return "[station.device.right]\nkind = \"touch\"\nbackend = \"hd\"\nserial = \"815\"\naddress = "
+           "\"" PASSUNG_HD_SHIM_FILE "\"\n";
+}
+
+template <class Device>
+bool isNoForce(const Device& device) {
+    const auto last = device.commands.last();
     return std::all_of(std::begin(last.felt), std::end(last.felt), [](double component) { return component == 0.0; });
+}
+
+/// At a tracker, which pushes nobody; x right, y away, z up as in the scene.
+std::function<void(double, double)> handAt(fake::VrpnServer& server) {
+    return [&server](double height, double tremor) { server.sendPose(2, {tremor, 0.0, height}, {0.0, 0.0, 0.0, 1.0}); };
+}
+
+std::string stationOf(const fake::VrpnServer& server) {
+    return "[station.device.right]\nkind = \"tracker\"\nbackend = \"vrpn\"\nserial = \"Phantom0#2\"\naddress = "
+           "\"127.0.0.1:" +
+           std::to_string(server.port()) + "\"\n";
 }
 
 std::vector<store::AttemptRow> attemptsOf(const std::filesystem::path& database) {
@@ -297,6 +329,38 @@ TEST(RealDevices, ASigma7RunsTheSameFileAsItsSimulationWithTheSameTables) {
     EXPECT_NE(sessions.find("dhd,4711"), std::string::npos) << sessions;
 }
 
+TEST(RealDevices, ATouchRunsTheSameFileAsItsSimulationWithTheSameTables) {
+    // Truth: invariant: same files, columns and rows a trial. The shim's own account says that a force was felt.
+    const TempFolder folder;
+    fake::SharedBlock<fake::HdBlock> block(fake::kHdVariable);
+    block->stepped = false;
+    fake::HdDevice& device = block->devices[0];
+    writeText(folder / "peg.toml", pegInHole("kind = \"touch\"", true));
+    writeText(folder / "station.toml", stationOfTouch());
+    {
+        const Hand hand(handAt(device));
+        const Ended real = runProgram(folder.path(), realRun("real.db"));
+        ASSERT_EQ(real.exit_code, 0) << real.out << real.err;
+    }
+    const auto attempts = attemptsOf(folder / "real.db");
+    ASSERT_EQ(attempts.size(), 4u);
+    for (const auto& attempt : attempts) {
+        EXPECT_EQ(faultOf(attempt), "");
+        EXPECT_EQ(attempt.device, "touch");
+        EXPECT_EQ(attempt.outcome, "success");
+    }
+    EXPECT_TRUE(isNoForce(device));
+    EXPECT_FALSE(device.opened);
+    EXPECT_EQ(device.non_finite, 0);
+    bool pushed = false;
+    const auto count = device.commands.count();
+    for (auto row = std::max<std::int64_t>(0, count - 4000); row < count; ++row)
+        pushed = pushed || device.commands.row(row).felt[0] < -0.05;
+    EXPECT_TRUE(pushed) << "in the last trials";
+    const std::string sessions = sessionsLikeSimulated(folder);
+    EXPECT_NE(sessions.find("hd,815"), std::string::npos) << sessions;
+}
+
 TEST(RealDevices, ALibraryThatCrashesInContactPausesTheSessionWhichGoesOn) {
     // Truth: invariant; the shim's own account: the device's watchdog is on, which ends the force of a dead host.
     const TempFolder folder;
@@ -361,6 +425,57 @@ TEST(RealDevices, ASpaceMouseRunsTheSameFileAsItsSimulation) {
     EXPECT_EQ(shapeOf(folder.path() / "real" / "trials.csv"), shapeOf(folder.path() / "simulated" / "trials.csv"));
 }
 
+TEST(RealDevices, ATrackerOfVrpnRunsTheSameFileAsItsSimulationWithTheSameTables) {
+    // Truth: invariant: same files, columns and rows a trial. The fake's own account says that no force was asked.
+    const TempFolder folder;
+    fake::VrpnServer server;
+    writeText(folder / "peg.toml", pegInHole("kind = \"tracker\"", false));
+    writeText(folder / "station.toml", stationOf(server));
+    {
+        const Hand hand(handAt(server));
+        const Ended real = runProgram(folder.path(), realRun("real.db"));
+        ASSERT_EQ(real.exit_code, 0) << real.out << real.err;
+    }
+    const auto attempts = attemptsOf(folder / "real.db");
+    ASSERT_EQ(attempts.size(), 4u);
+    for (const auto& attempt : attempts) {
+        EXPECT_EQ(faultOf(attempt), "");
+        EXPECT_EQ(attempt.device, "tracker");
+        EXPECT_EQ(attempt.outcome, "success");
+    }
+    EXPECT_EQ(server.received(), 0);
+    EXPECT_EQ(server.malformed(), 0);
+    const std::string sessions = sessionsLikeSimulated(folder);
+    EXPECT_NE(sessions.find("vrpn,Phantom0#2"), std::string::npos) << sessions;
+}
+
+TEST(RealDevices, ATrackerWhoseServerEndsPausesTheSessionWhichGoesOnWhenItIsBack) {
+    // Truth: invariant.
+    const TempFolder folder;
+    fake::VrpnServer server;
+    writeText(folder / "peg.toml", pegInHole("kind = \"any\"\nleast_force_N = 0", false));
+    writeText(folder / "station.toml", stationOf(server));
+    const Hand hand(handAt(server));
+    Program program(folder.path(), realRun("s.db"), true);
+    ASSERT_NE(program.nextAcknowledgement(), "");
+    server.stayMute(true);  // connects, and then nothing: not there yet
+    server.dropConnections();
+    ASSERT_NE(program.nextAcknowledgement(), "");
+    const Ended early = runProgram(folder.path(), {"session", "continue", "s.db"});
+    EXPECT_NE(early.exit_code, 0);
+    EXPECT_NE((early.out + early.err).find("right (vrpn Phantom0#2) is lost: "), std::string::npos)
+        << early.out << early.err;
+    server.stayMute(false);
+    goOnToTheEnd(folder, program);
+    const auto attempts = attemptsOf(folder / "s.db");
+    ASSERT_EQ(attempts.size(), 5u);
+    const auto lost = std::count_if(attempts.begin(), attempts.end(), [](const store::AttemptRow& attempt) {
+        return faultOf(attempt).starts_with("device right (vrpn Phantom0#2)");
+    });
+    EXPECT_EQ(lost, 1);
+    EXPECT_EQ(server.received(), 0);
+}
+
 TEST(RealDevices, AUnitThatIsWeakerThanItsKindIsRefusedWithTheReason) {
     // Truth: invariant; the sentences name both numbers.
     const TempFolder folder;
@@ -396,13 +511,17 @@ TEST(RealDevices, DoctorSaysWhatItFoundAndWritesTheStationFileThatRunTakes) {
     fake::HaplyService service({"049D", "04A1"});
     writeText(folder / "look.toml", stationOf(service) +
                                         "[station.device.left]\nkind = \"spacemouse\"\nbackend = "
-                                        "\"spacenavd\"\naddress = \"/nonexistent/spnav.sock\"\n");
+                                        "\"spacenavd\"\naddress = \"/nonexistent/spnav.sock\"\n"
+                                        "[station.device.third]\nkind = \"tracker\"\nbackend = \"vrpn\"\naddress = "
+                                        "\"Wand@127.0.0.1:9\"\n");
     const Ended ended =
         runProgram(folder.path(), {"doctor", "--station-file", "look.toml", "--write-station", "station.toml"});
     ASSERT_EQ(ended.exit_code, 0) << ended.err;
     EXPECT_NE(ended.out.find("found: inverse3, serial 049D, firmware 7.4.0"), std::string::npos) << ended.out;
     EXPECT_NE(ended.out.find("not found: spacenavd does not run: nobody listens at /nonexistent/spnav.sock"),
               std::string::npos)
+        << ended.out;
+    EXPECT_NE(ended.out.find("not found: no VRPN server runs: nobody listens at 127.0.0.1:9"), std::string::npos)
         << ended.out;
     const std::string written = readText(folder / "station.toml");
     EXPECT_NE(written.find("[station.device.right]\nkind = \"inverse3\"\nbackend = \"haply\"\nserial = \"049D\""),
@@ -414,6 +533,37 @@ TEST(RealDevices, DoctorSaysWhatItFoundAndWritesTheStationFileThatRunTakes) {
         runProgram(folder.path(), {"doctor", "--station-file", "look.toml", "--write-station", "station.toml"});
     EXPECT_EQ(again.exit_code, 1);
     EXPECT_EQ(readText(folder / "station.toml"), written) << "what is there is left as it is";
+}
+
+TEST(RealDevices, DoctorFindsTrackersAndWritesWhichIsWhich) {
+    // Truth: invariant; the number of the sensor is the fake's.
+    const TempFolder folder;
+    fake::VrpnServer server;
+    writeText(folder / "look.toml", stationOf(server));
+    const Hand hand(handAt(server));
+    const Ended ended =
+        runProgram(folder.path(), {"doctor", "--station-file", "look.toml", "--write-station", "station.toml"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    EXPECT_NE(ended.out.find("found: tracker, serial Phantom0#2, VRPN 07.38"), std::string::npos) << ended.out;
+    const std::string written = readText(folder / "station.toml");
+    EXPECT_NE(written.find(stationOf(server)), std::string::npos) << written;
+}
+
+TEST(RealDevices, DoctorFindsTouchesOrSaysWhichFileIsMissing) {
+    // Truth: invariant; model and serial number are the shim's.
+    const TempFolder folder;
+    fake::SharedBlock<fake::HdBlock> block(fake::kHdVariable);
+    writeText(folder / "look.toml", stationOfTouch());
+    Ended ended =
+        runProgram(folder.path(), {"doctor", "--station-file", "look.toml", "--write-station", "station.toml"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    EXPECT_NE(ended.out.find("found: Premium 6DOF, serial 815, HD 3.4.0, driver 1.0"), std::string::npos) << ended.out;
+    EXPECT_NE(readText(folder / "station.toml").find(stationOfTouch()), std::string::npos);
+    std::string missing = stationOfTouch();
+    missing.replace(missing.find("libhd-shim"), 10, "libnone");
+    writeText(folder / "look.toml", missing);
+    ended = runProgram(folder.path(), {"doctor", "--station-file", "look.toml", "--write-station", "none.toml"});
+    EXPECT_NE(ended.out.find("not found: OpenHaptics' library does not load from "), std::string::npos) << ended.out;
 }
 
 TEST(RealDevices, DoctorFindsSigma7sOrSaysWhichFileIsMissing) {

@@ -1331,6 +1331,10 @@
         <translation>3Dconnexion SpaceMouse (simuliert)</translation>
     </message>
     <message>
+        <source>Tracker of six degrees without motors (simulated)</source>
+        <translation>Tracker mit sechs Freiheitsgraden ohne Motoren (simuliert)</translation>
+    </message>
+    <message>
         <source>Any device (simulated)</source>
         <translation>Beliebiges Gerät (simuliert)</translation>
     </message>
