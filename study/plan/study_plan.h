@@ -153,7 +153,8 @@ struct StudyPlan {
     std::vector<PlannedQuestionnaire> questionnaires;
     ResumePolicy resume;
     View view;
-    double max_missed_share = 0.01;                 // of a trial's cycles: an attempt that missed more is not valid
+    double max_missed_share = 0.01;                 // of a trial's cycles: an attempt that missed more, or had
+                                                    // no usable input in more, is not valid
     std::vector<std::string> measures;              // names, all known to study/measures
     std::vector<NamedMesh> meshes;                  // each once; their content is no part of the text
     std::vector<std::string> languages;             // of the texts, in the order of the file

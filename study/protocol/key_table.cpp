@@ -118,7 +118,7 @@ constexpr std::array kStudyKeys{
     Key{"constraint", "from", Integer, atLeast(1), "", "1", "First position in the block, from 1; only position_window."},
     Key{"constraint", "to", Integer, atLeast(1), "", "(only position_window)", "Last position."},
 
-    Key{"loop", "max_missed_share", Number, from(0, 1), "", "0.01", "Largest part of the cycles between start and end of a trial that a valid attempt may miss. In virtual time no cycle is missed."},
+    Key{"loop", "max_missed_share", Number, from(0, 1), "", "0.01", "Largest part of the cycles between start and end of a trial that a valid attempt may miss, or have no usable device input in. In virtual time no cycle is missed."},
 };
 
 template <std::size_t n, std::size_t m>

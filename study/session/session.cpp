@@ -33,6 +33,17 @@ std::string pictureFault(const Presentation& given, const plan::View& view, doub
     return {};
 }
 
+/// Why a trial in which at most this share of the cycles may be without usable input does not count; empty: nothing
+/// against it. A cycle that was missed had none.
+std::string loopFault(const TrialCourse& course, double most) {
+    const double lacking = static_cast<double>(course.rejectedTicks() + course.missedCycles());
+    if (!(lacking > most * static_cast<double>(course.length()))) return {};
+    if (course.rejectedTicks() == 0)
+        return fmt::format("loop: {} of {} cycles missed", course.missedCycles(), course.length());
+    return fmt::format("no usable device input in {} ticks, and {} of {} cycles missed", course.rejectedTicks(),
+                       course.missedCycles(), course.length());
+}
+
 /// @pre the condition's trial is an assembly
 std::string stepJson(const plan::Condition& condition, const measures::StepChange& change) {
     const auto& steps = std::get<plan::AssemblyTask>(condition.task.form).steps;
@@ -365,11 +376,8 @@ AttemptEnd Session::describeEnd(LoopHealth health) {
         end.invalid_reason = course.abortReason();
     else if (health.dropped_records > 0)
         end.invalid_reason = fmt::format("{} tick records lost", health.dropped_records);
-    else if (course.rejectedTicks() > 0)
-        end.invalid_reason = fmt::format("no usable device input in {} ticks", course.rejectedTicks());
-    else if (static_cast<double>(course.missedCycles()) >
-             setup_.plan->max_missed_share * static_cast<double>(course.length()))
-        end.invalid_reason = fmt::format("loop: {} of {} cycles missed", course.missedCycles(), course.length());
+    else
+        end.invalid_reason = loopFault(course, setup_.plan->max_missed_share);
     // Nobody looks at the pictures of a simulated participant, and where the program does not time a trial nothing
     // moves.
     const bool seen = health.presentation && course.started() &&

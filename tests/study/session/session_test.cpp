@@ -240,15 +240,6 @@ TEST_F(SessionTest, LostRecordsMakeTheAttemptInvalid) {
     EXPECT_EQ(sink_.ends[0].health.dropped_records, 3);
 }
 
-TEST_F(SessionTest, TicksWithoutUsableInputMakeTheAttemptInvalid) {
-    // Truth: closed form. Ticks 90…109; the trial starts at 100, so ten of them count.
-    Records records = successScript();
-    for (std::size_t i = 90; i < 110; ++i) records[i].status |= kInputRejected;
-    planTrials({records});
-    ASSERT_TRUE(runSession());
-    EXPECT_EQ(sink_.ends.at(0).invalid_reason, "no usable device input in 10 ticks");
-}
-
 /// The same script after `missed` cycles before `tick`.
 Records withMissed(Records records, std::size_t tick, std::uint32_t missed) {
     records[tick].periods += missed;
@@ -288,6 +279,23 @@ TEST_F(SessionTest, TooManyMissedCyclesMakeTheAttemptInvalid) {
     planTrials({withMissed(successScript(), 500, 20)});
     ASSERT_TRUE(runSession());
     EXPECT_TRUE(sink_.ends.at(2).valid) << sink_.ends[2].invalid_reason;
+}
+
+/// The same script without usable input from `first` on.
+Records withRejected(Records records, std::size_t first, std::size_t count) {
+    for (std::size_t i = first; i < first + count; ++i) records[i].status |= kInputRejected;
+    return records;
+}
+
+TEST_F(SessionTest, TicksWithoutUsableInputCountAsMissedCycles) {
+    // Truth: closed form. The trial starts at tick 100: of 20 ticks from 90 on ten count, 0.7 % of 1450; 15 are more
+    // than 1 %, as are ten and five missed cycles of then 1455.
+    planTrials({withRejected(successScript(), 90, 20), withRejected(successScript(), 500, 15),
+                withMissed(withRejected(successScript(), 500, 10), 700, 5)});
+    ASSERT_TRUE(runSession());
+    EXPECT_TRUE(sink_.ends.at(0).valid) << sink_.ends[0].invalid_reason;
+    EXPECT_EQ(sink_.ends.at(1).invalid_reason, "no usable device input in 15 ticks, and 0 of 1450 cycles missed");
+    EXPECT_EQ(sink_.ends.at(2).invalid_reason, "no usable device input in 10 ticks, and 5 of 1455 cycles missed");
 }
 
 TEST_F(SessionTest, TimeOutCountsMissedCycles) {
