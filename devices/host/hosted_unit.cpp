@@ -47,7 +47,9 @@ Exchange exchangeOf(const HostReport& report) {
     return exchange;
 }
 
-std::int64_t stamp() { return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+std::int64_t stampOfNow() {
+    return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 }  // namespace
 
@@ -75,7 +77,7 @@ Exchange HostedLink::exchange(const Wrench& F_D_B, milliseconds longest) {
         command.force[i] = F_D_B.force[i];
         command.torque[i] = F_D_B.torque[i];
     }
-    command.at = stamp();
+    command.at = std::exchange(made_at_, std::nullopt).value_or(stampOfNow());
     command.number = ++commands_;
     command.withheld_seen = withheld_;
     process_->give(command);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,9 @@ public:
     ~HostedLink() override;
 
     Result<DeviceUnit> open() override;
+    /// A wrench without a stamp is of now.
     unit::Exchange exchange(const Wrench& F_D_B, std::chrono::milliseconds longest) override;
+    void stamp(std::int64_t made_at) noexcept override { made_at_ = made_at; }
     void close() noexcept override;
 
 private:
@@ -35,6 +38,7 @@ private:
     const DeviceDescription limits_;
     std::unique_ptr<HostProcess> process_;
     std::chrono::steady_clock::time_point heard_at_;
+    std::optional<std::int64_t> made_at_;  // of the wrench that comes
     std::uint64_t commands_ = 0;
     std::uint64_t reports_ = 0, withheld_ = 0, gaps_ = 0;  // that were told of so far
 };

@@ -44,6 +44,9 @@ public:
     /// Gives the wrench, which is within the unit's limits, where the unit takes one, and what the unit has said since,
     /// or the reply to it. Waits for `longest` at most.
     virtual Exchange exchange(const Wrench& F_D_B, std::chrono::milliseconds longest) = 0;
+    /// Before it: when the loop made that wrench [ns on the steady clock], for a link whose other side lets go of one
+    /// that is too old. What was late on its way would hold longer than a heartbeat.
+    virtual void stamp(std::int64_t /*made_at*/) noexcept {}
     virtual void close() noexcept = 0;
 };
 

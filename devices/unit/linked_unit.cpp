@@ -190,6 +190,7 @@ bool LinkedUnit::awaitCommand() {
 /// What may reach the unit now.
 Wrench LinkedUnit::wrenchNow() noexcept {
     const Commanded& newest = commanded_.latest();
+    link_->stamp(newest.at);
     const double share = beats_.share({newest.number, newest.at, !isZero(newest.F_D_B), 0}, now());
     if (!isLent()) return {};
     const Wrench F = {share * newest.F_D_B.force, share * newest.F_D_B.torque};

@@ -240,6 +240,25 @@ TEST(HostedLink, TellsOfAGapAndTakesTheForceBeyondUntilItIsKnown) {
     EXPECT_TRUE(reached([&] { return exchange({}), exchange(kPush), felt() > 0.0; }));
 }
 
+TEST(HostedLink, HoldsAWrenchFromWhenItWasMade) {
+    // Truth: the shim's own account: what was late on its way to the host does not begin a heartbeat of its own.
+    SharedBlock<DhdBlock> block(fake::kDhdVariable);
+    setenv("PASSUNG_DEVICE_HOST", PASSUNG_DEVICE_HOST_FILE, 1);
+    HostedLink link({.backend = "dhd", .address = PASSUNG_DHD_SHIM_FILE}, {});
+    ASSERT_TRUE(link.open());
+    const auto exchange = [&](int late_ms) {
+        const auto made = Steady::now() - std::chrono::milliseconds(late_ms);
+        link.stamp(std::chrono::nanoseconds(made.time_since_epoch()).count());
+        link.exchange(kPush, std::chrono::milliseconds(1000));
+        return block->devices[0].commands.last().felt[1];
+    };
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(exchange(kHeartbeat + 1), 0.0);
+    EXPECT_TRUE(reached([&] {
+        link.exchange({}, std::chrono::milliseconds(1000));
+        return exchange(0) > 0.0;
+    })) << "one that is young enough does";
+}
+
 TEST(HostedLink, IsLimitedInTheHostWhateverTheStudySends) {
     // Truth: the shim's own account: what it was asked for.
     SharedBlock<DhdBlock> block(fake::kDhdVariable);

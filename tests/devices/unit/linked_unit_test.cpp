@@ -225,6 +225,31 @@ std::vector<FaultCase> faults() {
 INSTANTIATE_TEST_SUITE_P(Faults, LinkedUnitFault, testing::ValuesIn(faults()),
                          [](const testing::TestParamInfo<FaultCase>& fault) { return fault.param.name; });
 
+TEST(LinkedUnit, StampsAWrenchWithTheTimeAtWhichTheLoopMadeIt) {
+    // Truth: invariant: exchanges that follow without a command of the loop's have the stamp of its last.
+    Bench bench;
+    bench.push();
+    const auto stamps = [&] {
+        const std::lock_guard lock(bench.script.mutex);
+        return bench.script.stamps;
+    };
+    const auto monotonic = [] {
+        timespec t{};
+        clock_gettime(CLOCK_MONOTONIC, &t);
+        return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+    };
+    const std::int64_t before = monotonic();
+    bench.unit->command(kPush);
+    const std::int64_t after = monotonic();
+    const std::size_t from = stamps().size() + 1;  // one may be on its way
+    ASSERT_TRUE(reached([&] { return stamps().size() > from + 5; }));
+    const auto all = stamps();
+    for (std::size_t i = from; i < all.size(); ++i) {
+        EXPECT_GE(all[i], before);
+        EXPECT_LE(all[i], after);
+    }
+}
+
 TEST(LinkedUnit, WhatIsToldBesideAFaultIsNoOtherFault) {
     // Truth: invariant: of a unit that is in use a remark is told; of one that has a fault it would be a second one.
     Bench bench;

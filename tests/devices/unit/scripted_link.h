@@ -19,6 +19,7 @@ struct Script {
     std::function<Exchange(std::int64_t)>
         answers;  // by the number of the exchange, from 0 since the last say() or open
     std::vector<Wrench> got;
+    std::vector<std::int64_t> stamps;           // of each
     std::vector<loop::DeviceState> state_then;  // of the unit, before each exchange
     std::function<loop::DeviceState()> state;
     int opened = 0;
@@ -55,6 +56,10 @@ public:
         script_.state_then.push_back(script_.state ? script_.state() : loop::DeviceState::Absent);
         if (!script_.there) return {Exchange::Kind::Gone, {}, "unplugged"};
         return script_.answers ? script_.answers(script_.since++) : Exchange{};
+    }
+    void stamp(std::int64_t made_at) noexcept override {
+        const std::lock_guard lock(script_.mutex);
+        script_.stamps.push_back(made_at);
     }
     void close() noexcept override {}
 
