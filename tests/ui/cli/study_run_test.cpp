@@ -109,20 +109,36 @@ bool hasATestOfItsOwn(const std::string& study) {
     return study.starts_with("gearbox_assembly/") || study.starts_with("accuracy_threshold/");
 }
 
+/// A shipped study, performed by one simulated person into study.db of a folder of its own.
+struct Performed {
+    TempFolder folder;
+    Ended run;
+};
+
+/// Once for all tests of this program.
+const Performed& performed(const std::string& study) {
+    static std::map<std::string, Performed> all;
+    const auto [found, is_new] = all.try_emplace(study);
+    if (is_new)
+        found->second.run = runProgram(
+            found->second.folder.path(),
+            {"run", std::string(PASSUNG_SOURCE_DIR) + "/protocols/" + study, "--simulated", "1", "--db", "study.db"});
+    return found->second;
+}
+
 class ShippedStudy : public testing::TestWithParam<std::string> {};
 
 TEST_P(ShippedStudy, RunsToItsDataFileAndEveryRowSaysWhatHappened) {
     // Truth: invariant (an outcome is what the events, the recorded ticks and the protocol's rules say)
     if (!test::atFullLength() && hasATestOfItsOwn(GetParam())) GTEST_SKIP() << "but for PASSUNG_LONG=1";
-    const TempFolder folder;
     const std::string file = std::string(PASSUNG_SOURCE_DIR) + "/protocols/" + GetParam();
     const auto plan = protocol::readProtocol(file, run::knownDevices(), run::knownMeasures());
     ASSERT_TRUE(plan);
-    const Ended run = runProgram(folder.path(), {"run", file, "--simulated", "1"});
+    const auto& [folder, run] = performed(GetParam());
     ASSERT_EQ(run.exit_code, 0) << run.err;
     for (const std::string& line : linesOf(run.err))
         EXPECT_NE(line.find(": warning: feedback.cues = [\"vibrotactile\"]"), std::string::npos) << line;
-    const auto reader = store::StoreReader::open(folder / (plan->name + ".db"));
+    const auto reader = store::StoreReader::open(folder / "study.db");
     ASSERT_TRUE(reader);
     const auto sessions = reader->sessions();
     ASSERT_EQ(sessions->size(), static_cast<std::size_t>(plan::sessionsOf(*plan)));
@@ -171,8 +187,7 @@ TEST_P(ShippedStudy, RunsToItsDataFileAndEveryRowSaysWhatHappened) {
     for (const auto& [outcome, count] : outcomes)
         std::printf("%s: %d %s\n", GetParam().c_str(), count, outcome.c_str());
 
-    ASSERT_EQ(runProgram(folder.path(), {"export", plan->name + ".db", "--out", "tables", "--no-samples"}).exit_code,
-              0);
+    ASSERT_EQ(runProgram(folder.path(), {"export", "study.db", "--out", "tables", "--no-samples"}).exit_code, 0);
     for (const char* table : {"trials.csv", "participants.csv", "sessions.csv"}) {
         const fake::CsvFile csv = fake::readCsv(readText(folder.path() / "tables" / table));
         EXPECT_FALSE(csv.rows.empty());
@@ -185,10 +200,9 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedStudy, testing::ValuesIn(shippedStudies()),
 /// Times of the main block's trials of a study's only participant, ascending; a trial that did not succeed counts its
 /// time-out.
 std::vector<double> trialTimes(const std::string& study) {
-    const TempFolder folder;
-    const std::string file = std::string(PASSUNG_SOURCE_DIR) + "/protocols/" + study;
-    EXPECT_EQ(runProgram(folder.path(), {"run", file, "--simulated", "1", "--db", "s.db"}).exit_code, 0);
-    const auto reader = store::StoreReader::open(folder / "s.db");
+    const auto& [folder, run] = performed(study);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const auto reader = store::StoreReader::open(folder / "study.db");
     const auto attempts = reader->attempts();
     std::vector<double> times;
     for (const auto& attempt : *attempts)
