@@ -8,7 +8,8 @@ namespace passung::host {
 namespace {
 
 TEST(SharedPages, AValueIsReadWholeOrNotAtAll) {
-    // Truth: invariant: all numbers of a value are of one writing. Two threads that share a processor with others see few.
+    // Truth: invariant: all numbers of a value are of one writing. Two threads that share a processor with others see
+    // few.
     struct Numbers {
         std::uint64_t all[32];
     };
