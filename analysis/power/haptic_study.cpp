@@ -1,7 +1,5 @@
 #include "analysis/power/haptic_study.h"
 
-#include <filesystem>
-
 #include "analysis/power/temporary_folder.h"
 #include "study/run/machine/auto_accuracy.h"
 #include "study/run/run_study.h"
@@ -16,9 +14,7 @@ Result<exporter::StudyData> hapticStudy(const plan::StudyPlan& plan, int partici
                      .key = "contact.accuracy",
                      .value = "auto"};
     const TemporaryFolder folder;
-    if (folder.path().empty())
-        return Error{.message = "a temporary folder cannot be made",
-                     .file = std::filesystem::temp_directory_path().string()};
+    if (const auto made = folder.made(); !made) return made.errors();
     run::RunOptions options;
     options.database = (folder.path() / "study.db").string();
     options.simulated = participants;

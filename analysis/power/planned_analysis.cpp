@@ -4,9 +4,14 @@
 
 namespace passung::power {
 
+const plan::Factor* factorNamed(std::string_view name, const plan::StudyPlan& plan) {
+    const auto found = std::find_if(plan.factors.begin(), plan.factors.end(),
+                                    [&](const plan::Factor& factor) { return factor.name == name; });
+    return found == plan.factors.end() ? nullptr : &*found;
+}
+
 const plan::Factor& factorOf(const LevelPair& pair, const plan::StudyPlan& plan) {
-    return *std::find_if(plan.factors.begin(), plan.factors.end(),
-                         [&](const plan::Factor& factor) { return factor.name == pair.factor; });
+    return *factorNamed(pair.factor, plan);
 }
 
 const plan::Analysis* plannedAnalysis(const PlantedEffect& effect, const plan::StudyPlan& plan) {

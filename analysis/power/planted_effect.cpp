@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "analysis/power/planned_analysis.h"
 #include "core/base/random.h"
 
 namespace passung::power {
@@ -61,12 +62,6 @@ bool readSpread(std::string_view text, bool multiplied, PlantedEffect& effect) {
     const auto spread = numberIn(text);
     (multiplied ? effect.log_scale_spread : effect.shift_spread) = spread.value_or(0.0);
     return spread && *spread >= 0.0;
-}
-
-const plan::Factor* factorNamed(std::string_view name, const plan::StudyPlan& plan) {
-    const auto found = std::find_if(plan.factors.begin(), plan.factors.end(),
-                                    [&](const plan::Factor& factor) { return factor.name == name; });
-    return found == plan.factors.end() ? nullptr : &*found;
 }
 
 /// "FACTOR:LEVEL" in two parts; the second is empty where there is no colon.

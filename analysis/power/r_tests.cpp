@@ -152,7 +152,7 @@ TestFactor testFactor(const std::string& name, const plan::StudyPlan& plan) {
             if (block.phase == plan::Phase::Main) factor.levels.push_back(block.name);
         return factor;
     }
-    const plan::Factor& known = factorOf({name, "", ""}, plan);
+    const plan::Factor& known = *factorNamed(name, plan);
     factor.within = known.kind != plan::FactorKind::Between;
     for (const plan::Level& level : known.levels) factor.levels.push_back(level.label);
     return factor;
@@ -265,6 +265,7 @@ std::string whyNotInR(const PlantedEffect& effect, const std::string& test, cons
 Result<std::vector<EffectTest>> testInR(const PlantedEffect& effect, const std::string& test,
                                         const plan::StudyPlan& plan, std::span<const exporter::StudyData> studies) {
     const TemporaryFolder folder;
+    if (const auto made = folder.made(); !made) return made.errors();
     const std::vector<TestFactor> factors = factorsOf(effect, test, plan);
     std::string data = "study,person";
     for (const TestFactor& factor : factors) data += ',' + factor.column;

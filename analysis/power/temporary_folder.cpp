@@ -30,6 +30,11 @@ TemporaryFolder::TemporaryFolder() {
     path_ = name;
 }
 
+Result<Done> TemporaryFolder::made() const {
+    if (!path_.empty()) return Done{};
+    return Error{.message = "a temporary folder cannot be made", .file = fs::temp_directory_path().string()};
+}
+
 TemporaryFolder::~TemporaryFolder() {
     std::error_code ignored;
     if (!path_.empty()) fs::remove_all(path_, ignored);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/base/folder_lock.h"
+#include "core/base/result.h"
 
 namespace passung::power {
 
@@ -15,7 +16,9 @@ public:
     TemporaryFolder(const TemporaryFolder&) = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
-    const std::filesystem::path& path() const { return path_; }  // empty: it could not be made
+    /// An error where it could not be made: nothing may be written by its path then.
+    Result<Done> made() const;
+    const std::filesystem::path& path() const { return path_; }
 
 private:
     std::filesystem::path path_;
