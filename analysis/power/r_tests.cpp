@@ -74,8 +74,10 @@ mixed_test <- function(means, within, between, term) {
   unlist(of_term(anova(fit), term)[c("F value", "Pr(>F)")])
 }
 
-# t and p of the one of two one-sided t-tests that says less.
+# t and p of the one of two one-sided t-tests that says less. The bounds are, as in a report, of the plan's first level
+# less its second, whichever the effect is planted at.
 equivalence_test <- function(means, pair, bounds, paired) {
+  pair <- sort(pair)
   x <- means$value[means$f1 == pair[1]]
   y <- means$value[means$f1 == pair[2]]
   tests <- list(t.test(x, y, paired = paired, alternative = "greater", mu = bounds[1]),

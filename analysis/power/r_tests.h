@@ -18,8 +18,8 @@ std::string whyNotInR(const PlantedEffect& effect, const std::string& test, cons
 /// The tests of virtual studies in one run of R. Models have the factors of the planned analysis if that is of this
 /// test, else the effect's alone; covariates are left out. Who counts: as in a report whoever has a value at each
 /// combination of the factors within persons. `p` of an analysis of variance: Greenhouse and Geisser's; of equivalence:
-/// the larger of two, small where the difference is proven to lie within the bounds. `mean` of survival: the logarithm
-/// of the ratio of hazards.
+/// the larger of two, small where the plan's first level less its second is proven to lie within the bounds. `mean` of
+/// survival: the logarithm of the ratio of hazards.
 Result<std::vector<EffectTest>> testInR(const PlantedEffect& effect, const std::string& test,
                                         const plan::StudyPlan& plan, std::span<const exporter::StudyData> studies);
 

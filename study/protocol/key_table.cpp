@@ -100,7 +100,7 @@ constexpr std::array kStudyKeys{
     Key{"analysis", "transform", Choice, kAny, "log", "(none)", "`log`: the natural logarithm of each participant's value is analysed; a value that is not above 0 counts as none."},
     Key{"analysis", "covariates", Texts, kAny, "", "(none)", "Of lmm and survival: what else the model has, `order_position` or `session`, of cells by their mean."},
     Key{"analysis", "contrasts", Texts, kAny, "", "(all pairs)", "Differences that are planned, `\"FACTOR: LEVEL - LEVEL\"`; the others are not shown."},
-    Key{"analysis", "equivalence_bounds", Any, kAny, "", "(not equivalence)", "`[low, high]` in the outcome's unit (with `transform` of its logarithm): differences between them do not matter."},
+    Key{"analysis", "equivalence_bounds", Any, kAny, "", "(not equivalence)", "`[low, high]` in the outcome's unit (with `transform` of its logarithm): a difference between them, of the first level less the second, does not matter."},
     Key{"analysis", "family", Name, kAny, "", "(none)", "Analyses of one name have their p values adjusted together, by Holm."},
     Key{"exclude", "data", Choice, kAny, "trials|participants", "!", "What the rule leaves out: trials by their own value, or participants by their mean over the trials that count."},
     Key{"exclude", "value", Text, kAny, "", "!", "A measure that the study stores; of participants also a scale, as `ssq.total`, by the mean of their forms."},

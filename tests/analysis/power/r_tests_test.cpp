@@ -128,7 +128,8 @@ TEST_F(RTests, OfAMixedModelOfTwoLevelsIsThePairedT) {
 }
 
 TEST_F(RTests, OfEquivalenceAreTwoOneSidedTests) {
-    // Truth: closed form: half of the two-sided p of the differences less each bound; the larger one counts.
+    // Truth: closed form: half of the two-sided p of the differences less each bound; the larger one counts. The bounds
+    // are of the first level less the second (protocols/KEYS.md), wherever an effect is planted.
     plan::StudyPlan plan = squarePlan(plan::FactorKind::Within);
     plan::Analysis planned{kTime, {"method"}, "equivalence"};
     planned.equivalence_bounds = {-1.0, 1.5};
@@ -136,16 +137,19 @@ TEST_F(RTests, OfEquivalenceAreTwoOneSidedTests) {
     const exporter::StudyData study = normalStudy(plan, 20, 6);
     std::vector<double> above, below;
     for (const auto& [code, at] : timesOf(study)) {
-        const double d = (at.at("d/1") + at.at("d/2") - at.at("a/1") - at.at("a/2")) / 2.0;
+        const double d = (at.at("a/1") + at.at("a/2") - at.at("d/1") - at.at("d/2")) / 2.0;
         above.push_back(d + 1.0);
         below.push_back(1.5 - d);
     }
     ASSERT_GT(stats::pairedT(above).t, 0.0);
     ASSERT_GT(stats::pairedT(below).t, 0.0);
     const double truth = std::max(stats::pairedT(above).p, stats::pairedT(below).p) / 2.0;
-    const auto tests = tested(effectOf("method:d=+0", plan), "equivalence", plan, {study});
-    EXPECT_NEAR(tests[0].p, truth, 1e-9);
-    EXPECT_NEAR(tests[0].mean, stats::pairedT(above).mean - 1.0, 1e-9);
+    const double difference = stats::pairedT(above).mean - 1.0;
+    for (const auto& [effect, sign] : {std::pair("method:a=+0", 1.0), std::pair("method:d=+0", -1.0)}) {
+        const auto tests = tested(effectOf(effect, plan), "equivalence", plan, {study});
+        EXPECT_NEAR(tests[0].p, truth, 1e-9) << effect;
+        EXPECT_NEAR(tests[0].mean, sign * difference, 1e-9) << effect;
+    }
 }
 
 TEST_F(RTests, OfSurvivalCountWhoIsFaster) {
