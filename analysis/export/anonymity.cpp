@@ -66,20 +66,6 @@ std::string withoutTyped(const std::string& column, const std::string& text) {
     return column == "not_counted_because" ? text : kMissing;
 }
 
-struct Items {
-    std::size_t questionnaire, item, value;
-
-    std::string nameIn(const std::vector<std::string>& row) const { return row[questionnaire] + '.' + row[item]; }
-};
-
-/// Of the table of answers, if this is it.
-std::optional<Items> itemsOf(const Table& table) {
-    const auto questionnaire = placeOf(table, "questionnaire"), item = placeOf(table, "item"),
-               value = placeOf(table, "value");
-    if (!questionnaire || !item || !value) return std::nullopt;
-    return Items{*questionnaire, *item, *value};
-}
-
 }  // namespace
 
 Result<Band> readBand(const std::string& text) {
@@ -92,27 +78,6 @@ Result<Band> readBand(const std::string& text) {
     return Band{item, *width};
 }
 
-/// Whom the rows are of; nobody in tables about no persons.
-struct Anonymiser::Persons {
-    explicit Persons(const Table& table) : code(placeOf(table, "participant_id")), kind(placeOf(table, "kind")) {}
-
-    bool has(const std::vector<std::string>& row) const { return code && !(kind && row[*kind] == "simulated"); }
-    const std::string& of(const std::vector<std::string>& row) const { return row[*code]; }
-
-    std::optional<std::size_t> code, kind;
-};
-
-void Anonymiser::apply(Table& table) {
-    const Persons persons(table);
-    if (!persons.code) return;
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        if (table.columns[i].type == "time") setBack(table, i, persons);
-        if (table.columns[i].typed) leaveOut(table, i, persons);
-    }
-    tellInBands(table, persons);
-    listSmallCells(table, persons);
-}
-
 void Anonymiser::note(Entry entry) {
     if (entry.cells > 0) entries_.push_back(std::move(entry));
 }
@@ -123,65 +88,69 @@ int Anonymiser::weeksOf(const std::string& participant) {
     return found->second;
 }
 
-void Anonymiser::setBack(Table& table, std::size_t column, const Persons& persons) {
-    Entry entry{table.file, table.columns[column].name, "set back by whole weeks, each person's own number", {}};
-    for (auto& row : table.rows) {
-        if (!persons.has(row) || row[column].empty() || row[column] == kMissing) continue;
-        row[column] = weeksBefore(row[column], weeksOf(persons.of(row)));
-        ++entry.cells;
+Anonymiser::Work::Work(Anonymiser& owner, const Table& table)
+    : owner_(owner), file_(table.file), code_(placeOf(table, "participant_id")), kind_(placeOf(table, "kind")) {
+    if (!code_) return;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const Column& column = table.columns[i];
+        if (column.type == "time")
+            cells_.push_back({i, true, {file_, column.name, "set back by whole weeks, each person's own number", {}}});
+        if (column.typed) cells_.push_back({i, false, {file_, column.name, "text left out", {}}});
     }
-    note(std::move(entry));
+    const auto questionnaire = placeOf(table, "questionnaire"), item = placeOf(table, "item"),
+               value = placeOf(table, "value");
+    if (!questionnaire || !item || !value) return;
+    items_ = Items{*questionnaire, *item, *value};
+    for (const Band& band : owner.how_.bands)
+        bands_.push_back({file_, "value", fmt::format("low end of its range of {}", band.width), band.item});
 }
 
-void Anonymiser::leaveOut(Table& table, std::size_t column, const Persons& persons) {
-    Entry entry{table.file, table.columns[column].name, "text left out", {}};
-    for (auto& row : table.rows) {
-        if (!persons.has(row) || row[column].empty() || row[column] == kMissing) continue;
-        std::string rest = withoutTyped(entry.column, row[column]);
-        if (rest != row[column]) ++entry.cells;
-        row[column] = std::move(rest);
+bool Anonymiser::Work::hasPerson(const TableRow& row) const { return code_ && !(kind_ && row[*kind_] == "simulated"); }
+
+void Anonymiser::Work::change(TableRow& row) {
+    for (Cells& cells : cells_) {
+        std::string& text = row[cells.column];
+        if (!hasPerson(row) || text.empty() || text == kMissing) continue;
+        std::string rest =
+            cells.times ? weeksBefore(text, owner_.weeksOf(row[*code_])) : withoutTyped(cells.entry.column, text);
+        if (cells.times || rest != text) ++cells.entry.cells;
+        text = std::move(rest);
     }
-    note(std::move(entry));
+    if (!items_) return;
+    tellInBands(row);
+    countAnswer(row);
 }
 
-void Anonymiser::tellInBands(Table& table, const Persons& persons) {
-    const auto items = itemsOf(table);
-    if (!items) return;
-    for (const Band& band : how_.bands) {
-        Entry entry{table.file, "value", fmt::format("low end of its range of {}", band.width), band.item};
-        for (auto& row : table.rows) {
-            if (items->nameIn(row) != band.item) continue;
-            used_.insert(band.item);
-            const auto value = numberIn(row[items->value]);
-            if (!persons.has(row) || !value) continue;
-            row[items->value] = cell(band.width * std::floor(*value / band.width));
-            ++entry.cells;
-        }
-        note(std::move(entry));
+void Anonymiser::Work::tellInBands(TableRow& row) {
+    for (std::size_t i = 0; i < bands_.size(); ++i) {
+        const Band& band = owner_.how_.bands[i];
+        if (items_->nameIn(row) != band.item) continue;
+        owner_.used_.insert(band.item);
+        const auto value = numberIn(row[items_->value]);
+        if (!hasPerson(row) || !value) continue;
+        row[items_->value] = cell(band.width * std::floor(*value / band.width));
+        ++bands_[i].cells;
     }
 }
 
-/// Of items that each person answered once: others are about trials and conditions, not about persons.
-void Anonymiser::listSmallCells(const Table& table, const Persons& persons) {
-    const auto items = itemsOf(table);
-    if (!items) return;
-    std::map<std::string, std::map<std::string, std::set<std::string>>> by_answer;  // who, by item and answer
-    std::map<std::string, std::set<std::string>> answered;
-    std::set<std::string> often;
-    for (const auto& row : table.rows) {
-        if (!persons.has(row)) continue;
-        const std::string item = items->nameIn(row);
-        if (!answered[item].insert(persons.of(row)).second) often.insert(item);
-        if (numberIn(row[items->value])) by_answer[item][row[items->value]].insert(persons.of(row));
-    }
-    for (const auto& [item, answers] : by_answer) {
-        if (often.contains(item)) continue;
+void Anonymiser::Work::countAnswer(const TableRow& row) {
+    if (!hasPerson(row)) return;
+    const std::string item = items_->nameIn(row);
+    if (!answered_[item].insert(row[*code_]).second) often_.insert(item);
+    if (numberIn(row[items_->value])) by_answer_[item][row[items_->value]].insert(row[*code_]);
+}
+
+void Anonymiser::Work::end() {
+    for (Cells& cells : cells_) owner_.note(std::move(cells.entry));
+    for (Entry& band : bands_) owner_.note(std::move(band));
+    for (const auto& [item, answers] : by_answer_) {
+        if (often_.contains(item)) continue;
         for (const auto& [answer, who] : answers) {
             const auto count = static_cast<std::int64_t>(who.size());
-            if (count < how_.least_persons)
-                note({table.file, "value",
-                      fmt::format("answer of fewer than {} persons: kept, look at it", how_.least_persons),
-                      fmt::format("{}={}", item, answer), count});
+            const auto least = owner_.how_.least_persons;
+            if (count < least)
+                owner_.note({file_, "value", fmt::format("answer of fewer than {} persons: kept, look at it", least),
+                             fmt::format("{}={}", item, answer), count});
         }
     }
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -33,26 +34,58 @@ struct Anonymity {
 /// by a number of whole weeks that each person has for himself, texts that somebody typed are left out. Simulated
 /// participants stay as they are.
 class Anonymiser {
+    struct Entry {
+        std::string file, column, what, value;
+        std::int64_t cells = 0;
+    };
+
 public:
     explicit Anonymiser(Anonymity how) : how_(std::move(how)), random_(how_.seed) {}
 
-    void apply(Table& table);
+    /// A table at work. Belongs to its anonymiser.
+    class Work {
+    public:
+        /// For each row of the table, once and in order.
+        void change(TableRow& row);
+        /// After the last row: takes what was done to account.
+        void end();
+
+    private:
+        friend class Anonymiser;
+        Work(Anonymiser& owner, const Table& table);
+        /// A column's cells that are times to set back, or texts that somebody typed.
+        struct Cells {
+            std::size_t column;
+            bool times;
+            Entry entry;
+        };
+        struct Items {
+            std::size_t questionnaire, item, value;
+
+            std::string nameIn(const TableRow& row) const { return row[questionnaire] + '.' + row[item]; }
+        };
+        bool hasPerson(const TableRow& row) const;
+        void tellInBands(TableRow& row);
+        void countAnswer(const TableRow& row);
+
+        Anonymiser& owner_;
+        std::string file_;
+        std::optional<std::size_t> code_, kind_;  // columns; no code: the table is about no persons
+        std::vector<Cells> cells_;
+        std::optional<Items> items_;  // of the table of answers
+        std::vector<Entry> bands_;    // as the owner's
+        // Who, by item and answer, of items that each person answered once: others are about trials and conditions.
+        std::map<std::string, std::map<std::string, std::set<std::string>>> by_answer_;
+        std::map<std::string, std::set<std::string>> answered_;
+        std::set<std::string> often_;
+    };
+    Work begin(const Table& table) { return {*this, table}; }
     /// What was changed, and which answers point to somebody: a row for each column, or answer.
     Table account() const;
     /// Bands of items that no table had.
     std::vector<std::string> unusedBands() const;
 
 private:
-    struct Entry {
-        std::string file, column, what, value;
-        std::int64_t cells = 0;
-    };
-    struct Persons;  // of the table at hand
-
-    void setBack(Table& table, std::size_t column, const Persons& persons);
-    void leaveOut(Table& table, std::size_t column, const Persons& persons);
-    void tellInBands(Table& table, const Persons& persons);
-    void listSmallCells(const Table& table, const Persons& persons);
     void note(Entry entry);
     int weeksOf(const std::string& participant);
 

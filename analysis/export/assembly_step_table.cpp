@@ -113,18 +113,20 @@ ColumnsOf<StepRow> movement() {
 }  // namespace
 
 Table makeAssemblySteps(const StudyData& study) {
-    std::vector<StepRow> rows;
-    for (const store::AttemptRow& attempt : study.attempts) {
-        std::int64_t number = 0;
-        for (const session::StepEnd& step : attempt.steps) rows.push_back({&attempt, ++number, &step});
-    }
     ColumnsOf<StepRow> columns;
     append(columns, attemptColumns(), attemptOf<StepRow>);
     for (const auto& more : {whatAndWhen(), counts(), movement()}) append(columns, more);
-    return makeTable("assembly_steps.csv",
-                     "One row per attempt at an assembly and step of it: what became of the step. Times count from the "
-                     "trial's start.",
-                     columns, rows);
+    return makeLongTable<StepRow>(
+        "assembly_steps.csv",
+        "One row per attempt at an assembly and step of it: what became of the step. Times count from the "
+        "trial's start.",
+        std::move(columns), [&study](const auto& take) {
+            for (const store::AttemptRow& attempt : study.attempts) {
+                std::int64_t number = 0;
+                for (const session::StepEnd& step : attempt.steps) take({&attempt, ++number, &step});
+            }
+            return Done{};
+        });
 }
 
 }  // namespace passung::exporter

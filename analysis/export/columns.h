@@ -66,14 +66,31 @@ std::vector<Column> descriptions(const ColumnsOf<Row>& columns) {
     return all;
 }
 
+template <class Row>
+TableRow cellsIn(const ColumnsOf<Row>& columns, const Row& row) {
+    TableRow cells;
+    cells.reserve(columns.size());
+    for (const ColumnOf<Row>& column : columns) cells.push_back(column.text(row));
+    return cells;
+}
+
 /// A row of the table for each of `rows`.
 template <class Row, class Rows>
 Table makeTable(std::string file, std::string about, const ColumnsOf<Row>& columns, const Rows& rows) {
     Table table{std::move(file), std::move(about), descriptions(columns), {}};
-    for (const Row& row : rows) {
-        std::vector<std::string>& cells = table.rows.emplace_back();
-        for (const ColumnOf<Row>& column : columns) cells.push_back(column.text(row));
-    }
+    for (const Row& row : rows) table.rows.push_back(cellsIn(columns, row));
+    return table;
+}
+
+/// The same of rows that are made one by one when they are written: `each` calls its argument with every `Row` and
+/// tells what failed. @pre what `each` and the columns refer to outlives the table
+template <class Row>
+Table makeLongTable(std::string file, std::string about, ColumnsOf<Row> columns,
+                    std::function<Result<Done>(const std::function<void(const Row&)>&)> each) {
+    Table table{std::move(file), std::move(about), descriptions(columns), {}};
+    table.more = [columns = std::move(columns), each = std::move(each)](const TakeRow& take) {
+        return each([&](const Row& row) { take(cellsIn(columns, row)); });
+    };
     return table;
 }
 

@@ -1,5 +1,7 @@
 #include "analysis/export/contact_energy_table.h"
 
+#include <algorithm>
+
 #include "analysis/export/shared_columns.h"
 
 namespace passung::exporter {
@@ -40,27 +42,33 @@ ColumnsOf<PairRow> pairColumns(bool hands) {
     return columns;
 }
 
+/// Calls `take` with the pairs of an attempt, scene by scene.
+void eachPair(const store::AttemptRow& attempt, const std::function<void(const PairRow&)>& take) {
+    std::int64_t scene = 1;
+    const auto& pairs = attempt.contact_energy;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        take({&attempt, scene, &pairs[i]});
+        // The last row of a hand; the next scene begins with the first one.
+        if (pairs[i].obstacle.empty() && (i + 1 == pairs.size() || pairs[i + 1].hand.empty())) ++scene;
+    }
+}
+
 }  // namespace
 
 Table makeContactEnergy(const StudyData& study) {
-    std::vector<PairRow> rows;
-    bool hands = false;
-    for (const store::AttemptRow& attempt : study.attempts) {
-        std::int64_t scene = 1;
-        const auto& pairs = attempt.contact_energy;
-        for (std::size_t i = 0; i < pairs.size(); ++i) {
-            rows.push_back({&attempt, scene, &pairs[i]});
-            hands = hands || !pairs[i].hand.empty();
-            // The last row of a hand; the next scene begins with the first one.
-            if (pairs[i].obstacle.empty() && (i + 1 == pairs.size() || pairs[i + 1].hand.empty())) ++scene;
-        }
-    }
-    return makeTable(
+    const bool hands = std::any_of(study.attempts.begin(), study.attempts.end(), [](const auto& attempt) {
+        return std::any_of(attempt.contact_energy.begin(), attempt.contact_energy.end(),
+                           [](const session::ContactEnergy& pair) { return !pair.hand.empty(); });
+    });
+    return makeLongTable<PairRow>(
         "contact_energy.csv",
         "One row per attempt, scene and obstacle, and one per scene for what no obstacle pushed: the energy account of "
         "the pair of the held part and that obstacle when the scene ended. A scene's rows add up to its account, "
         "energy_J of its last tick.",
-        pairColumns(hands), rows);
+        pairColumns(hands), [&study](const auto& take) {
+            for (const store::AttemptRow& attempt : study.attempts) eachPair(attempt, take);
+            return Done{};
+        });
 }
 
 }  // namespace passung::exporter

@@ -45,16 +45,20 @@ ColumnsOf<OverlapRow> overlapColumns() {
 
 }  // namespace
 
-Table makeExactOverlap(const StudyData& study) {
-    std::vector<OverlapRow> rows;
-    for (const store::AttemptRow& attempt : study.attempts)
-        for (const measures::TickOverlap& tick : attempt.overlaps) rows.push_back({&attempt, &tick});
-    return makeTable(
+Table makeExactOverlap(const StudyData& study, const store::StoreReader& reader) {
+    return makeLongTable<OverlapRow>(
         "exact_overlap.csv",
         "One row per attempt and tick that was judged after the trial: how deep the held part, as it was "
         "shown, and the obstacles truly reached into each other. The record's proxy_depth_m of the same tick "
         "is that of sample points.",
-        overlapColumns(), rows);
+        overlapColumns(), [&study, &reader](const auto& take) -> Result<Done> {
+            for (const store::AttemptRow& attempt : study.attempts) {
+                const auto overlaps = reader.overlaps(attempt.attempt_id);
+                if (!overlaps) return overlaps.errors();
+                for (const measures::TickOverlap& tick : *overlaps) take({&attempt, &tick});
+            }
+            return Done{};
+        });
 }
 
 }  // namespace passung::exporter

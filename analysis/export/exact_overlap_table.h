@@ -6,6 +6,7 @@
 namespace passung::exporter {
 
 /// One row per attempt and judged tick.
-Table makeExactOverlap(const StudyData& study);
+/// @pre both outlive the table
+Table makeExactOverlap(const StudyData& study, const store::StoreReader& reader);
 
 }  // namespace passung::exporter

@@ -35,21 +35,25 @@ namespace {
 constexpr const char* kSamplesPattern = "samples/*.csv.gz";
 
 /// Makes the tables one after the other: all at once they would be larger than what they are made of.
-void forEachTable(const StudyData& study, const std::function<void(Table)>& take) {
+void forEachTable(const StudyData& study, const store::StoreReader& reader, const std::function<void(Table)>& take) {
+    const auto some = [&study](const auto& has) {
+        return std::any_of(study.attempts.begin(), study.attempts.end(), has);
+    };
     const std::vector<Cell> cells = cellsOf(study);
     take(makeTrials(study));
     take(makeCells(study, cells));
     for (Table& table : makeWide(study, cells)) take(std::move(table));
     if (!study.analyses.empty()) take(makeAnalyses(study, cells));
-    take(makeEvents(study));
+    take(makeEvents(reader));
     if (!study.notes.empty()) take(makeNotes(study));
     take(makeSessions(study));
     take(makeParticipants(study));
     take(makeTiming(study));
     take(makeContactEnergy(study));
-    take(makeExactOverlap(study));
-    if (Table steps = makeAssemblySteps(study); !steps.rows.empty()) take(std::move(steps));
-    if (Table shown = makePresentation(study); !shown.rows.empty()) take(std::move(shown));
+    take(makeExactOverlap(study, reader));
+    if (some([](const store::AttemptRow& attempt) { return !attempt.steps.empty(); })) take(makeAssemblySteps(study));
+    if (some([](const store::AttemptRow& attempt) { return attempt.presentation.has_value(); }))
+        take(makePresentation(study));
     if (!study.detections.empty()) take(makeSecondary(study));
     if (!study.staircase_steps.empty()) {
         take(makeStaircase(study));
@@ -67,10 +71,9 @@ void forEachTable(const StudyData& study, const std::function<void(Table)>& take
 }
 
 /// A cell without any text is a missing value like others.
-void markMissing(Table& table) {
-    for (auto& row : table.rows)
-        for (std::string& text : row)
-            if (text.empty()) text = kMissing;
+void markMissing(TableRow& row) {
+    for (std::string& text : row)
+        if (text.empty()) text = kMissing;
 }
 
 std::string readmeText(const StudyData& study, const std::vector<Table>& tables, const std::vector<ExportedFile>& more,
@@ -124,10 +127,10 @@ public:
     explicit Writer(ExportFolder& folder) : folder_(folder) {}
 
     void write(const std::string& path, std::string_view bytes) {
-        if (!errors_.empty()) return;
-        const auto done = folder_.write(path, bytes);
-        if (!done) errors_ = done.errors();
-        ++files_;
+        if (!failed()) keep(folder_.write(path, bytes));
+    }
+    void write(const std::string& path, const ExportFolder::Pieces& pieces) {
+        if (!failed()) keep(folder_.writePieces(path, pieces));
     }
     void fail(const Errors& errors) { errors_ = errors; }
     bool failed() const { return !errors_.empty(); }
@@ -135,6 +138,11 @@ public:
     std::size_t files() const { return files_; }
 
 private:
+    void keep(const Result<Done>& done) {
+        if (!done) errors_ = done.errors();
+        ++files_;
+    }
+
     ExportFolder& folder_;
     Errors errors_;
     std::size_t files_ = 0;
@@ -200,13 +208,22 @@ Result<ExportReport> exportAll(const store::StoreReader& reader, const std::stri
     if (options.anonymity) anonymiser.emplace(*options.anonymity);
     const auto write = [&](Table table) {
         if (options.psych_ds) table.file = psychDsFile(*study, table, names_taken);
-        markMissing(table);
-        if (anonymiser) anonymiser->apply(table);
-        writer.write(table.file, toCsv(table));
+        auto hidden = anonymiser ? std::optional(anonymiser->begin(table)) : std::nullopt;
+        writer.write(table.file, [&](const TakeText& take) {
+            return writeCsv(
+                table,
+                [&hidden](TableRow& row) {
+                    markMissing(row);
+                    if (hidden) hidden->change(row);
+                },
+                take);
+        });
+        if (hidden) hidden->end();
         table.rows = {};
+        table.more = {};
         tables.push_back(std::move(table));
     };
-    forEachTable(*study, write);
+    forEachTable(*study, reader, write);
     if (!reader.damages().empty()) write(makeMissing(reader.damages()));
     if (anonymiser) {
         if (const auto unused = anonymiser->unusedBands(); !unused.empty())

@@ -201,14 +201,26 @@ Result<ExportFolder> ExportFolder::begin(const std::string& name, std::vector<st
 }
 
 Result<Done> ExportFolder::write(const std::string& path, std::string_view bytes) {
+    return writePieces(path, [bytes](const auto& take) {
+        take(bytes);
+        return Done{};
+    });
+}
+
+Result<Done> ExportFolder::writePieces(const std::string& path, const Pieces& make) {
     const fs::path file = workshop_ / kNew / path;
     std::error_code error;
     fs::create_directories(file.parent_path(), error);
     std::ofstream stream(file, std::ios::binary);
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    Sha256 sum;
+    auto made = make([&](std::string_view piece) {
+        stream.write(piece.data(), static_cast<std::streamsize>(piece.size()));
+        sum.update(piece);
+    });
+    if (!made) return made;
     stream.close();
     if (!stream) return folderError(file, "cannot be written");
-    sums_[path] = sha256Hex(bytes);
+    sums_[path] = sum.hex();
     return Done{};
 }
 

@@ -29,6 +29,9 @@ public:
 
     /// Writes one file; `path` is inside the folder, with '/'.
     Result<Done> write(const std::string& path, std::string_view bytes);
+    /// The same of pieces: `make` hands them to its argument one after the other.
+    using Pieces = std::function<Result<Done>(const std::function<void(std::string_view)>&)>;
+    Result<Done> writePieces(const std::string& path, const Pieces& make);
 
     /// Calls `work` with the folder that holds everything written, SHA256SUMS over it included. Files that it names
     /// belong to the export from then on; whatever else it left there is removed.

@@ -62,15 +62,16 @@ Table makePresentation(const StudyData& study) {
     append(columns, attemptColumns(), attemptOf<ShownAttempt>);
     append(columns, presentationColumns(),
            [](const ShownAttempt& row) -> const Presentation& { return *row.attempt->presentation; });
-    std::vector<ShownAttempt> rows;
-    for (const store::AttemptRow& attempt : study.attempts)
-        if (attempt.presentation) rows.push_back({&attempt});
-    return makeTable(
+    return makeLongTable<ShownAttempt>(
         "presentation.csv",
         "One row per attempt that a window showed: its pictures and its sound. The age of a picture is the time from "
         "the reading of the device for the newest tick that it shows until the display got it. Pictures are those of "
         "the trial, or of the attempt if its trial did not start.",
-        columns, rows);
+        std::move(columns), [&study](const auto& take) {
+            for (const store::AttemptRow& attempt : study.attempts)
+                if (attempt.presentation) take({&attempt});
+            return Done{};
+        });
 }
 
 }  // namespace passung::exporter

@@ -81,14 +81,15 @@ ColumnsOf<AttemptDetection> secondaryColumns() {
 }  // namespace
 
 Table makeSecondary(const StudyData& study) {
-    std::map<std::int64_t, const AttemptRow*> attempts;
-    for (const AttemptRow& attempt : study.attempts) attempts[attempt.attempt_id] = &attempt;
-    std::vector<AttemptDetection> rows;
-    for (const store::DetectionRow& row : study.detections) rows.push_back({attempts.at(row.attempt_id), &row});
-    return makeTable("secondary.csv",
-                     "One row per stimulus of a secondary task, and per press of its button that answers none, by "
-                     "time.",
-                     secondaryColumns(), rows);
+    return makeLongTable<AttemptDetection>(
+        "secondary.csv",
+        "One row per stimulus of a secondary task, and per press of its button that answers none, by time.",
+        secondaryColumns(), [&study](const auto& take) {
+            std::map<std::int64_t, const AttemptRow*> attempts;
+            for (const AttemptRow& attempt : study.attempts) attempts[attempt.attempt_id] = &attempt;
+            for (const store::DetectionRow& row : study.detections) take({attempts.at(row.attempt_id), &row});
+            return Done{};
+        });
 }
 
 }  // namespace passung::exporter

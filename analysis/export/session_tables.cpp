@@ -239,9 +239,9 @@ ColumnsOf<AccuracyRow> accuracyColumns() {
 
 }  // namespace
 
-Table makeEvents(const StudyData& study) {
-    return makeTable("events.csv", "One row per event of a session, in the order of time.", eventColumns(),
-                     study.events);
+Table makeEvents(const store::StoreReader& reader) {
+    return makeLongTable<EventRow>("events.csv", "One row per event of a session, in the order of time.",
+                                   eventColumns(), [&reader](const auto& take) { return reader.eachEvent(take); });
 }
 
 Table makeSessions(const StudyData& study) {
@@ -264,13 +264,15 @@ Table makeTiming(const StudyData& study) {
            [](const TimedAttempt& timed) -> const TimingRow& { return *timed.attempt->timing; });
     for (const store::MeasureRow& counter : study.counters)
         append(columns, ColumnsOf<AttemptRow>{counterColumn(counter)}, attemptOf<TimedAttempt>);
-    std::vector<TimedAttempt> rows;
-    for (const AttemptRow& attempt : study.attempts)
-        if (attempt.timing) rows.push_back({&attempt});
-    return makeTable("timing.csv",
-                     "One row per attempt that has ended: how well the haptic loop kept its rate. Times are NA where "
-                     "the loop ran in virtual time.",
-                     columns, rows);
+    return makeLongTable<TimedAttempt>(
+        "timing.csv",
+        "One row per attempt that has ended: how well the haptic loop kept its rate. Times are NA where "
+        "the loop ran in virtual time.",
+        std::move(columns), [&study](const auto& take) {
+            for (const AttemptRow& attempt : study.attempts)
+                if (attempt.timing) take({&attempt});
+            return Done{};
+        });
 }
 
 Table makeAccuracy(const StudyData& study) {

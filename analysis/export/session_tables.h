@@ -5,7 +5,8 @@
 
 namespace passung::exporter {
 
-Table makeEvents(const StudyData& study);
+/// @pre `reader` outlives the table, as `study` below
+Table makeEvents(const store::StoreReader& reader);
 Table makeSessions(const StudyData& study);
 Table makeParticipants(const StudyData& study);
 Table makeTiming(const StudyData& study);

@@ -94,7 +94,6 @@ Result<StudyData> readStudy(const store::StoreReader& reader) {
     take(reader.participants(), study.participants, errors);
     take(reader.sessions(), study.sessions, errors);
     take(reader.attempts(), study.attempts, errors);
-    take(reader.events(), study.events, errors);
     take(reader.notes(), study.notes, errors);
     take(reader.detections(), study.detections, errors);
     take(reader.staircaseTracks(), study.staircase_tracks, errors);

@@ -39,7 +39,6 @@ struct StudyData {
     std::vector<store::ParticipantRow> participants;
     std::vector<store::SessionRow> sessions;
     std::vector<store::AttemptRow> attempts;
-    std::vector<store::EventRow> events;
     std::vector<store::NoteRow> notes;
     std::vector<store::DetectionRow> detections;  // of the attempts, in their order
     std::vector<store::StaircaseTrackRow> staircase_tracks;

@@ -75,12 +75,29 @@ void appendField(std::string& line, std::string_view text) {
     line += '"';
 }
 
-std::string toCsv(const Table& table) {
+Result<Done> forEachRow(const Table& table, const TakeRow& take) {
+    for (const TableRow& row : table.rows) take(row);
+    return table.more ? table.more(take) : Done{};
+}
+
+Result<Done> writeCsv(const Table& table, const std::function<void(TableRow&)>& change, const TakeText& take) {
+    constexpr std::size_t kPiece = 1 << 16;
     std::string text;
     appendLine(text, table.columns, [](const Column& column) -> std::string_view { return column.name; });
-    for (const auto& row : table.rows) {
+    auto done = forEachRow(table, [&](TableRow row) {
+        if (change) change(row);
         appendLine(text, row, [](const std::string& field) -> std::string_view { return field; });
-    }
+        if (text.size() < kPiece) return;
+        take(text);
+        text.clear();
+    });
+    take(text);
+    return done;
+}
+
+std::string toCsv(const Table& table) {
+    std::string text;
+    (void)writeCsv(table, {}, [&text](std::string_view piece) { text += piece; });
     return text;
 }
 

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "core/base/result.h"
 
 namespace passung::exporter {
 
@@ -45,13 +48,23 @@ struct ColumnDetails {
 
 Column describe(std::string_view name, std::string_view label, std::string_view type, const ColumnDetails& details);
 
+/// The cells of a row, in the order of the columns.
+using TableRow = std::vector<std::string>;
+using TakeRow = std::function<void(TableRow)>;
+
 /// One CSV file: its columns' meaning and its cells as text.
 struct Table {
     std::string file;   // path inside the export, e.g. "trials.csv"
     std::string about;  // one sentence for the README
     std::vector<Column> columns;
-    std::vector<std::vector<std::string>> rows;
+    std::vector<TableRow> rows;
+    /// Hands out the rows after those, one after the other: of tables that grow with the number of trials, whose rows
+    /// are larger than what they are made of. Nothing: there are none.
+    std::function<Result<Done>(const TakeRow&)> more = {};
 };
+
+/// All rows, in order.
+Result<Done> forEachRow(const Table& table, const TakeRow& take);
 
 std::string cell(std::int64_t value);
 /// The shortest decimal that reads back to the same number; NA if it is not finite.
@@ -73,7 +86,12 @@ std::string secondsCell(const std::optional<std::int64_t>& nanoseconds);
 /// Appends one field, quoted as RFC 4180 asks if it holds a comma, a quote or a line break.
 void appendField(std::string& line, std::string_view text);
 
-/// The whole file: header, rows, LF after each.
+using TakeText = std::function<void(std::string_view)>;
+
+/// The whole file in pieces: header, rows, LF after each. `change`, if there is one, is done to each row before.
+Result<Done> writeCsv(const Table& table, const std::function<void(TableRow&)>& change, const TakeText& take);
+
+/// The same at once. @pre no `more` that fails
 std::string toCsv(const Table& table);
 
 }  // namespace passung::exporter

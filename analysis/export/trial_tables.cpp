@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <tuple>
 
 #include "analysis/export/shared_columns.h"
@@ -169,9 +170,12 @@ std::vector<Column> trialColumns(const StudyData& study) {
 }
 
 Table makeTrials(const StudyData& study) {
-    const TrialLookup lookup(study);
-    return makeTable("trials.csv", "One row per attempt at a trial, whatever became of it.",
-                     trialColumns(study, lookup), study.attempts);
+    const auto lookup = std::make_shared<const TrialLookup>(study);
+    return makeLongTable<AttemptRow>("trials.csv", "One row per attempt at a trial, whatever became of it.",
+                                     trialColumns(study, *lookup), [&study, lookup](const auto& take) {
+                                         for (const AttemptRow& attempt : study.attempts) take(attempt);
+                                         return Done{};
+                                     });
 }
 
 }  // namespace passung::exporter

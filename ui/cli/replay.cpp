@@ -113,7 +113,9 @@ private:
         const auto outcome = measures::outcomeNamed(attempt.outcome);
         if (!outcome || !attempt.end_ns) return MeasuresAgain{};  // it did not end: nothing was measured
         session::StoredEnd end{*outcome, (*attempt.end_ns - attempt.start_ns) / kTickNanoseconds, {}, attempt.seed};
-        end.overlaps = attempt.overlaps;
+        auto overlaps = reader_.overlaps(attempt.attempt_id);
+        if (!overlaps) return overlaps.errors();
+        end.overlaps = *std::move(overlaps);
         if (attempt.trial_ns) end.start_time = (*attempt.trial_ns - attempt.start_ns) / kTickNanoseconds;
         const auto again = session::judgeAgain(condition, hands, end);
         if (!again) return again.errors();

@@ -7,6 +7,7 @@
 #include "study/store/rows/consent_rows.h"
 #include "study/store/rows/contact_geometry_rows.h"
 #include "study/store/rows/event_rows.h"
+#include "study/store/rows/exact_overlap_rows.h"
 #include "study/store/rows/note_rows.h"
 #include "study/store/rows/plan_rows.h"
 #include "study/store/rows/questionnaire_rows.h"
@@ -314,6 +315,10 @@ Result<std::vector<AttemptRow>> StoreReader::attempts() const {
     return guarded(path_, [&] { return readAttempts(*database_, std::nullopt); });
 }
 
+Result<std::vector<measures::TickOverlap>> StoreReader::overlaps(std::int64_t attempt_id) const {
+    return guarded(path_, [&] { return readExactOverlaps(*database_, attempt_id); });
+}
+
 Result<AttemptRow> StoreReader::attempt(std::int64_t attempt_id) const {
     return guarded(path_, [&] {
         std::vector<AttemptRow> rows = readAttempts(*database_, attempt_id);
@@ -327,7 +332,17 @@ Result<std::vector<NoteRow>> StoreReader::notes() const {
 }
 
 Result<std::vector<EventRow>> StoreReader::events() const {
-    return guarded(path_, [&] { return readEvents(*database_); });
+    std::vector<EventRow> events;
+    const auto read = eachEvent([&events](const EventRow& event) { events.push_back(event); });
+    if (!read) return read.errors();
+    return events;
+}
+
+Result<Done> StoreReader::eachEvent(const std::function<void(const EventRow&)>& take) const {
+    return guarded(path_, [&] {
+        store::eachEvent(*database_, take);
+        return Done{};
+    });
 }
 
 Result<std::vector<DetectionRow>> StoreReader::detections() const {

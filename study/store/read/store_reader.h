@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -58,7 +59,11 @@ public:
     Result<std::vector<SessionRow>> sessions() const;
     Result<std::vector<AttemptRow>> attempts() const;
     Result<AttemptRow> attempt(std::int64_t attempt_id) const;
+    /// Of the ticks that were judged after the trial; none of attempts before schema revision 17.
+    Result<std::vector<measures::TickOverlap>> overlaps(std::int64_t attempt_id) const;
     Result<std::vector<EventRow>> events() const;
+    /// The same one by one.
+    Result<Done> eachEvent(const std::function<void(const EventRow&)>& take) const;
     Result<std::vector<NoteRow>> notes() const;
     Result<std::vector<DetectionRow>> detections() const;                // attempts as above, then by time
     Result<std::vector<StaircaseTrackRow>> staircaseTracks() const;      // by protocol, as it lists them

@@ -3,7 +3,6 @@
 #include "study/store/rows/assembly_step_rows.h"
 #include "study/store/rows/contact_energy_rows.h"
 #include "study/store/rows/delivery_rows.h"
-#include "study/store/rows/exact_overlap_rows.h"
 #include "study/store/rows/presentation_rows.h"
 #include "study/store/schema/named_columns.h"
 #include "study/store/schema/view_columns.h"
@@ -106,7 +105,6 @@ void readParts(const Database& database, AttemptRow& attempt) {
         else
             attempt.undefined_measures.push_back(values.text(0));
     }
-    attempt.overlaps = readExactOverlaps(database, attempt.attempt_id);
     attempt.steps = readAssemblySteps(database, attempt.attempt_id);
     attempt.contact_energy = readContactEnergy(database, attempt.attempt_id);
     attempt.delivered = readDelivery(database, attempt.attempt_id);

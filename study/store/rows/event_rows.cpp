@@ -14,7 +14,7 @@ void insertEvent(const Database& database, std::int64_t segment_id, const sessio
               Named{"payload_json", event.payload_json}, Named{"t_utc", utc});
 }
 
-std::vector<EventRow> readEvents(const Database& database) {
+void eachEvent(const Database& database, const std::function<void(const EventRow&)>& take) {
     const Selection<EventRow> columns = {{"s.participant_id", &EventRow::participant_id},
                                          {"p.kind", &EventRow::kind},
                                          {"s.ordinal", &EventRow::session_ordinal},
@@ -25,11 +25,12 @@ std::vector<EventRow> readEvents(const Database& database) {
                                          {"e.source", &EventRow::source},
                                          {"e.event", &EventRow::event},
                                          {"e.payload_json", &EventRow::payload_json}};
-    return columns.all(database,
-                       "FROM event e JOIN segment g USING(segment_id) JOIN session s USING(session_id) "
-                       "JOIN participant p USING(participant_id) LEFT JOIN attempt a ON a.attempt_id=e.attempt_id "
-                       "LEFT JOIN trial_plan t USING(trial_id) "
-                       "ORDER BY s.participant_id, s.ordinal, g.segment_id, e.t_ns, e.event_id");
+    columns.each(database,
+                 "FROM event e JOIN segment g USING(segment_id) JOIN session s USING(session_id) "
+                 "JOIN participant p USING(participant_id) LEFT JOIN attempt a ON a.attempt_id=e.attempt_id "
+                 "LEFT JOIN trial_plan t USING(trial_id) "
+                 "ORDER BY s.participant_id, s.ordinal, g.segment_id, e.t_ns, e.event_id",
+                 take);
 }
 
 }  // namespace passung::store

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "study/session/trial_sink.h"
 #include "study/store/rows/rows.h"
@@ -16,7 +16,7 @@ class Database;
 void insertEvent(const Database& database, std::int64_t segment_id, const session::Event& event,
                  const std::optional<std::string>& utc);
 
-/// Reads the events by participant and session, in the order of time.
-std::vector<EventRow> readEvents(const Database& database);
+/// Hands out the events by participant and session, in the order of time.
+void eachEvent(const Database& database, const std::function<void(const EventRow&)>& take);
 
 }  // namespace passung::store

@@ -274,7 +274,6 @@ struct AttemptRow {
     std::map<std::string, double> measures;              // only those that are defined for this attempt
     std::vector<std::string> undefined_measures;         // recorded, without a value
     std::vector<session::StepEnd> steps;                 // of an assembly
-    std::vector<measures::TickOverlap> overlaps;         // of judged ticks; none before schema revision 17
     std::vector<session::ContactEnergy> contact_energy;  // none of attempts from before schema revision 6
     std::optional<session::Presentation> presentation;   // none: no window showed it
     std::optional<session::Delivered> delivered;         // of its feedback; none: not known

@@ -99,6 +99,11 @@ public:
         Statement statement = database.prepare("SELECT " + text() + " " + rest);
         return allOf(statement);
     }
+    /// The same rows, one after the other.
+    void each(const Database& database, const std::string& rest, const std::function<void(const Row&)>& take) const {
+        Statement statement = database.prepare("SELECT " + text() + " " + rest);
+        while (statement.step()) take(read(statement));
+    }
     /// The rows of a statement that begins with "SELECT " + text().
     std::vector<Row> allOf(Statement& statement) const {
         std::vector<Row> rows;

@@ -163,7 +163,7 @@ TEST(Store, AWholeSessionReadsBackAsItWasWritten) {
         EXPECT_EQ(attempt.state_hash, "0123456789abcdef");
         const std::vector<measures::TickOverlap> judged{{3, true, false, true, 1e-6, 2e-6},
                                                         {7, false, true, false, 0.0, 0.5e-6}};
-        EXPECT_EQ(attempt.overlaps, judged);
+        EXPECT_EQ(fake::require(reader.overlaps(attempt.attempt_id)), judged);
         ASSERT_EQ(attempt.contact_energy.size(), 2u);
         EXPECT_EQ(attempt.contact_energy[0].obstacle, "plate");
         EXPECT_EQ(attempt.contact_energy[0].taken_in_J, 1.0 / 3.0);
