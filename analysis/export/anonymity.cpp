@@ -105,7 +105,7 @@ Anonymiser::Work::Work(Anonymiser& owner, const Table& table)
         bands_.push_back({file_, "value", fmt::format("low end of its range of {}", band.width), band.item});
 }
 
-bool Anonymiser::Work::hasPerson(const TableRow& row) const { return code_ && !(kind_ && row[*kind_] == "simulated"); }
+bool Anonymiser::Work::hasPerson(const TableRow& row) const { return !(kind_ && row[*kind_] == "simulated"); }
 
 void Anonymiser::Work::change(TableRow& row) {
     for (Cells& cells : cells_) {

@@ -64,7 +64,7 @@ public:
 
             std::string nameIn(const TableRow& row) const { return row[questionnaire] + '.' + row[item]; }
         };
-        bool hasPerson(const TableRow& row) const;
+        bool hasPerson(const TableRow& row) const;  // @pre code_
         void tellInBands(TableRow& row);
         void countAnswer(const TableRow& row);
 

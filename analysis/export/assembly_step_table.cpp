@@ -116,16 +116,13 @@ Table makeAssemblySteps(const StudyData& study) {
     ColumnsOf<StepRow> columns;
     append(columns, attemptColumns(), attemptOf<StepRow>);
     for (const auto& more : {whatAndWhen(), counts(), movement()}) append(columns, more);
-    return makeLongTable<StepRow>(
-        "assembly_steps.csv",
+    return makeAttemptTable<StepRow>(
+        study, "assembly_steps.csv",
         "One row per attempt at an assembly and step of it: what became of the step. Times count from the "
         "trial's start.",
-        std::move(columns), [&study](const auto& take) {
-            for (const store::AttemptRow& attempt : study.attempts) {
-                std::int64_t number = 0;
-                for (const session::StepEnd& step : attempt.steps) take({&attempt, ++number, &step});
-            }
-            return Done{};
+        std::move(columns), [](const store::AttemptRow& attempt, const auto& take) {
+            std::int64_t number = 0;
+            for (const session::StepEnd& step : attempt.steps) take({&attempt, ++number, &step});
         });
 }
 

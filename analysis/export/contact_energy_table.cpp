@@ -60,15 +60,12 @@ Table makeContactEnergy(const StudyData& study) {
         return std::any_of(attempt.contact_energy.begin(), attempt.contact_energy.end(),
                            [](const session::ContactEnergy& pair) { return !pair.hand.empty(); });
     });
-    return makeLongTable<PairRow>(
-        "contact_energy.csv",
+    return makeAttemptTable<PairRow>(
+        study, "contact_energy.csv",
         "One row per attempt, scene and obstacle, and one per scene for what no obstacle pushed: the energy account of "
         "the pair of the held part and that obstacle when the scene ended. A scene's rows add up to its account, "
         "energy_J of its last tick.",
-        pairColumns(hands), [&study](const auto& take) {
-            for (const store::AttemptRow& attempt : study.attempts) eachPair(attempt, take);
-            return Done{};
-        });
+        pairColumns(hands), eachPair);
 }
 
 }  // namespace passung::exporter

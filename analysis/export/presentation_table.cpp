@@ -62,15 +62,13 @@ Table makePresentation(const StudyData& study) {
     append(columns, attemptColumns(), attemptOf<ShownAttempt>);
     append(columns, presentationColumns(),
            [](const ShownAttempt& row) -> const Presentation& { return *row.attempt->presentation; });
-    return makeLongTable<ShownAttempt>(
-        "presentation.csv",
+    return makeAttemptTable<ShownAttempt>(
+        study, "presentation.csv",
         "One row per attempt that a window showed: its pictures and its sound. The age of a picture is the time from "
         "the reading of the device for the newest tick that it shows until the display got it. Pictures are those of "
         "the trial, or of the attempt if its trial did not start.",
-        std::move(columns), [&study](const auto& take) {
-            for (const store::AttemptRow& attempt : study.attempts)
-                if (attempt.presentation) take({&attempt});
-            return Done{};
+        std::move(columns), [](const store::AttemptRow& attempt, const auto& take) {
+            if (attempt.presentation) take({&attempt});
         });
 }
 

@@ -264,14 +264,12 @@ Table makeTiming(const StudyData& study) {
            [](const TimedAttempt& timed) -> const TimingRow& { return *timed.attempt->timing; });
     for (const store::MeasureRow& counter : study.counters)
         append(columns, ColumnsOf<AttemptRow>{counterColumn(counter)}, attemptOf<TimedAttempt>);
-    return makeLongTable<TimedAttempt>(
-        "timing.csv",
+    return makeAttemptTable<TimedAttempt>(
+        study, "timing.csv",
         "One row per attempt that has ended: how well the haptic loop kept its rate. Times are NA where "
         "the loop ran in virtual time.",
-        std::move(columns), [&study](const auto& take) {
-            for (const AttemptRow& attempt : study.attempts)
-                if (attempt.timing) take({&attempt});
-            return Done{};
+        std::move(columns), [](const AttemptRow& attempt, const auto& take) {
+            if (attempt.timing) take({&attempt});
         });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "analysis/export/columns.h"
 #include "analysis/export/study_data.h"
@@ -94,6 +95,18 @@ ColumnsOf<store::AttemptRow> attemptColumns();
 template <class Row>
 const store::AttemptRow& attemptOf(const Row& row) {
     return *row.attempt;
+}
+
+/// A long table of the rows that `rows_of` makes of each attempt: it calls its second argument with them.
+/// @pre the study, and what the columns refer to, outlive the table
+template <class Row, class RowsOf>
+Table makeAttemptTable(const StudyData& study, std::string file, std::string about, ColumnsOf<Row> columns,
+                       RowsOf rows_of) {
+    return makeLongTable<Row>(std::move(file), std::move(about), std::move(columns),
+                              [&study, rows_of = std::move(rows_of)](const auto& take) {
+                                  for (const store::AttemptRow& attempt : study.attempts) rows_of(attempt, take);
+                                  return Done{};
+                              });
 }
 
 }  // namespace passung::exporter

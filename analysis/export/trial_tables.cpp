@@ -171,11 +171,9 @@ std::vector<Column> trialColumns(const StudyData& study) {
 
 Table makeTrials(const StudyData& study) {
     const auto lookup = std::make_shared<const TrialLookup>(study);
-    return makeLongTable<AttemptRow>("trials.csv", "One row per attempt at a trial, whatever became of it.",
-                                     trialColumns(study, *lookup), [&study, lookup](const auto& take) {
-                                         for (const AttemptRow& attempt : study.attempts) take(attempt);
-                                         return Done{};
-                                     });
+    return makeAttemptTable<AttemptRow>(study, "trials.csv", "One row per attempt at a trial, whatever became of it.",
+                                        trialColumns(study, *lookup),
+                                        [lookup](const AttemptRow& attempt, const auto& take) { take(attempt); });
 }
 
 }  // namespace passung::exporter
